@@ -1,0 +1,29 @@
+"""What a robot can do about a robot ahead of it: the open set of actions (section 2.3)."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from agents.validation import Checked
+
+AWAY: Literal[-1] = -1
+TOWARDS: Literal[1] = 1
+
+
+class Action(Checked):
+    """A way to resolve a conflict: turn, then drive forward.
+
+    Attributes
+    ----------
+    name : str
+        Name by which policies ask for it.
+    direction : {-1, 1}
+        d of Eq. 5.5: +1 turns towards the other robot (fight), −1 towards the most vacant
+        direction (flight).
+    duration : float
+        How long the robot drives after the turn (s).
+    """
+
+    name: str = Field(min_length=1)
+    direction: Literal[-1, 1]
+    duration: float = Field(gt=0)

@@ -1,0 +1,38 @@
+"""The decorator of every compiled function, and what keeps its cache honest.
+
+Numba caches a compiled function beside its source and compiles it anew when that one file changes. A
+function that was compiled into its caller can change without the caller's file, so all cached code that
+is older than any source of the packages with kernels is dropped on import.
+"""
+
+import contextlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+from numba import njit
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+def compiled(function: _Function) -> _Function:
+    """Compile a function of numbers and arrays with numba, and cache the machine code on disk.
+
+    Division by zero gives infinities and NaN as in numpy; nothing else about floating point is relaxed.
+    """
+    return cast(_Function, njit(cache=True, error_model="numpy")(function))
+
+
+def _drop_stale_code() -> None:
+    root = Path(__file__).parent.parent
+    sources = [path for package in ("agents", "model") for path in (root / package).glob("*.py")]
+    newest = max(path.stat().st_mtime for path in sources)
+    for package in ("agents", "model"):
+        for cached in (root / package / "__pycache__").glob("*.nb[ic]"):
+            # Another process may drop it first, or the installation be read-only.
+            with contextlib.suppress(OSError):
+                if cached.stat().st_mtime < newest:
+                    cached.unlink()
+
+
+_drop_stale_code()

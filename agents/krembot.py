@@ -1,0 +1,299 @@
+"""The robot: a Mesa agent in continuous space that lives by SimPy events (section 2.3).
+
+Every leg, turn, flight and fight is one SimPy timeout, whose end only marks that a decision is due; the
+decision is taken in the next percepts, by the same instant's view of the world for all robots. A
+timeout that a conflict has overtaken finds another one in its place and does nothing.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, Final, Protocol, cast
+
+import simpy
+from mesa.experimental.continuous_space import ContinuousSpace, ContinuousSpaceAgent
+from numpy.random import Generator
+from simpy.events import Timeout
+
+from agents.actions import TOWARDS, Action
+from agents.body import SENSORS
+from agents.fleet import ACTION, HOME, HOME_TURN, HOMING_ERROR, IDLE, LEG, LEG_OVER, TURN, Fleet
+from agents.habits import Conflict, Habits
+from agents.policies import Policy
+from agents.sensors import SECTOR, heads_for, walls_met, wrap
+from agents.streams import Purpose, stream
+
+_VACANT_ANGLES: Final = [
+    tuple(wrap(sensor * SECTOR) for sensor in range(SENSORS) if vacant >> sensor & 1)
+    for vacant in range(2**SENSORS)
+]
+"""Angles of the sensors whose bits are set (rad)."""
+
+
+class World(Protocol):
+    """What a robot needs of the model it lives in."""
+
+    env: simpy.Environment
+    space: ContinuousSpace
+    fleet: Fleet
+    habits: Habits
+    action_periods: Mapping[str, int]
+    seed: int
+    conflict_log: list[Conflict] | None
+
+
+class Krembot(ContinuousSpaceAgent):
+    """A robot.
+
+    Parameters
+    ----------
+    model : World
+        The Mesa model that it lives in.
+    index : int
+        Its number in the game, from 0: its row in the fleet and the name of its streams.
+    swarm : int
+        Its swarm-ID, from 0.
+    policy : Policy
+        Decides at a conflict.
+    policy_name : str
+        Under which the policy was asked for.
+    stride_program, stride_action : float
+        What it drives in a period in state P and in state A (m).
+    swarms : int
+        Number of swarms in the game.
+
+    Attributes
+    ----------
+    pucks : int
+        Pucks deposited.
+    t_a : list of int, length `swarms`
+        Periods of action, by the opponent's swarm; of actions that have ended.
+    t_p : int
+        Periods of program; of those that have ended.
+    conflicts : list of int, length `swarms`
+        Conflicts begun, by the opponent's swarm.
+    """
+
+    def __init__(
+        self,
+        model: World,
+        index: int,
+        swarm: int,
+        policy: Policy,
+        policy_name: str,
+        stride_program: float,
+        stride_action: float,
+        swarms: int,
+    ) -> None:
+        super().__init__(model.space, cast(Any, model))
+        self.index = index
+        self.swarm = swarm
+        self.policy = policy
+        self.policy_name = policy_name
+        self.pucks = 0
+        self.t_a = [0] * swarms
+        self.t_p = 0
+        self.conflicts = [0] * swarms
+        self._env = model.env
+        self._seed = model.seed
+        self._fleet = model.fleet
+        self._phase = model.fleet.phase
+        self._stride = model.fleet.stride
+        self._turn_rate = model.fleet.turn_rate
+        self._habits = model.habits
+        self._action_periods = model.action_periods
+        self._log = model.conflict_log
+        self._stride_program = stride_program
+        self._stride_action = stride_action
+        self._streams: dict[Purpose, Generator] = {}
+        self._timer: Timeout | None = None
+        self._since = int(model.env.now)
+        """When the current action or program began."""
+        self._action: Action | None = None
+        """Action of the conflict that is not closed yet."""
+        self._opponent_swarm = -1
+        """Swarm of the robot met last."""
+        self._open: tuple[Any, ...] = ()
+        """First fields of its `Conflict`, if conflicts are logged."""
+        self._open_t_a = 0
+
+    # What others may ask.
+
+    @property
+    def state(self) -> str:
+        """``A`` while it resolves a conflict, else ``P``."""
+        return "A" if self._phase[self.index] == ACTION else "P"
+
+    @property
+    def carrying(self) -> bool:
+        """Whether it carries a puck."""
+        return bool(self._fleet.carrying[self.index])
+
+    @property
+    def heading(self) -> float:
+        """Direction (rad)."""
+        return float(self._fleet.heading[self.index])
+
+    def times(self) -> tuple[list[int], int]:
+        """Return T(a) by the opponent's swarm and T(p) up to now (periods)."""
+        t_a, t_p = self.t_a.copy(), self.t_p
+        running = int(self._env.now) - self._since
+        if self._phase[self.index] == ACTION:
+            t_a[self._opponent_swarm] += running
+        else:
+            t_p += running
+        return t_a, t_p
+
+    # The program.
+
+    def pick_up(self) -> None:
+        """Take a puck."""
+        self._fleet.carrying[self.index] = 1
+
+    def deposit(self) -> None:
+        """Put the puck down at the own base; one who drove home is free again."""
+        index = self.index
+        self._fleet.carrying[index] = 0
+        self.pucks += 1
+        if self._phase[index] in (HOME, HOME_TURN):
+            self._timer = None
+            self._phase[index] = IDLE
+
+    def begin_leg(self) -> None:
+        """Wander straight ahead for an exponential time."""
+        habits = self._habits
+        self._drive(LEG, self._stride_program)
+        duration = self._draws(Purpose.LEG).exponential(habits.leg_mean)
+        self._wait(habits.periods(duration), self._leg_over, "leg")
+
+    def begin_wander_turn(self) -> None:
+        """Turn in place by a uniform angle."""
+        limit = self._habits.wander_turn
+        self._turn(TURN, self._draws(Purpose.WANDER).uniform(-limit, limit), self._turn_over)
+
+    def begin_wall_turn(self) -> None:
+        """Turn in place to a heading drawn uniformly from those without a wall ahead."""
+        habits = self._habits
+        x, y = self._fleet.positions[self.index].tolist()
+        heading = self.heading
+        draws = self._draws(Purpose.WALL)
+        met = walls_met(x, y, heading, habits.half, habits.wall_reach, habits.wall_half_angle)
+        while True:
+            target = draws.uniform(-math.pi, math.pi)
+            if habits.escape_away:
+                if not heads_for(target, met):
+                    break
+            elif not walls_met(x, y, target, habits.half, habits.wall_reach, habits.wall_half_angle):
+                break
+        self._turn(TURN, wrap(target - heading), self._turn_over)
+
+    def go_home(self, error: float) -> None:
+        """Turn towards the own base, which is in sight `error` (rad) off the heading, or drive to it."""
+        if abs(error) > HOMING_ERROR:
+            self._turn(HOME_TURN, error, self._turn_over)
+        else:
+            self._timer = None
+            self._drive(HOME, self._stride_program)
+
+    # The conflict.
+
+    def meet(self, now: int, other: int, swarm: int, angle: float, active: int, vacant: int) -> None:
+        """Begin a conflict; the one before it ends here, its T(p) with it.
+
+        Parameters
+        ----------
+        now : int
+            The time (periods).
+        other, swarm : int
+            The robot ahead, and its swarm-ID, which is all that the policy is told.
+        angle : float
+            Where it is, from the heading (rad).
+        active : int
+            Sensors with something near, n'_i of Eq. 5.4.
+        vacant : int
+            The most vacant directions, one bit for each sensor.
+        """
+        self.close(now)
+        index = self.index
+        action = self._action = self.policy.choose(swarm)
+        self._fleet.opponent[index] = other
+        self._opponent_swarm = swarm
+        self.conflicts[swarm] += 1
+        if self._log is not None:
+            x, y = self._fleet.positions[index].tolist()
+            self._open = (index, other, now, x, y, action, active)
+        if action.direction != TOWARDS:
+            angle = self._vacant_direction(vacant)
+        if angle != 0.0:
+            self._turn(ACTION, angle, self._drive_action)
+        else:
+            self._timer = None
+            self._drive_action(None)
+
+    def close(self, now: int) -> None:
+        """Count the time up to `now` (periods) and end the open conflict: at the next, or with the game."""
+        elapsed = now - self._since
+        self._since = now
+        if self._phase[self.index] == ACTION:  # overtaken: no program time
+            self.t_a[self._opponent_swarm] += elapsed
+            self._open_t_a = elapsed
+            elapsed = 0
+        self.t_p += elapsed
+        if self._log is not None and self._action is not None:
+            self._log.append(Conflict._make((*self._open, self._open_t_a, elapsed)))
+
+    def _vacant_direction(self, vacant: int) -> float:
+        """Return the angle of the most vacant sensor from the heading (rad), ties broken at random."""
+        angles = _VACANT_ANGLES[vacant]
+        if len(angles) == 1:
+            return angles[0]
+        return angles[int(self._draws(Purpose.VACANT).random() * len(angles))]
+
+    def _drive_action(self, event: Timeout | None) -> None:
+        if event is self._timer and self._action is not None:
+            self._drive(ACTION, self._stride_action)
+            name = self._action.name
+            self._wait(self._action_periods[name], self._action_over, name)
+
+    def _action_over(self, event: Timeout) -> None:
+        if event is self._timer:
+            now = cast(int, self._env.now)
+            elapsed = self._open_t_a = now - self._since
+            self.t_a[self._opponent_swarm] += elapsed
+            self._since = now
+            self._phase[self.index] = IDLE
+
+    # Legs and turns: at their end they ask for a decision, which the percepts of the same instant bring.
+
+    def _leg_over(self, event: Timeout) -> None:
+        if event is self._timer:
+            self._phase[self.index] = LEG_OVER
+
+    def _turn_over(self, event: Timeout) -> None:
+        if event is self._timer:
+            self._phase[self.index] = IDLE
+
+    def _drive(self, phase: int, stride: float) -> None:
+        index = self.index
+        self._phase[index] = phase
+        self._stride[index] = stride
+        self._turn_rate[index] = 0.0
+
+    def _turn(self, phase: int, angle: float, then: Callable[[Any], None]) -> None:
+        """Turn in place, in whole periods, and call `then`."""
+        index = self.index
+        periods = max(1, math.ceil(abs(angle) / self._habits.turn_step - 1e-9))
+        self._phase[index] = phase
+        self._stride[index] = 0.0
+        self._turn_rate[index] = angle / periods
+        self._wait(periods, then, "turn")
+
+    def _wait(self, periods: int, then: Callable[[Any], None], what: str) -> None:
+        """Call `then` after a time, with the event that is then `_timer`, unless another wait has begun."""
+        timer = self._timer = Timeout(self._env, periods, what)
+        timer.callbacks.append(then)
+
+    def _draws(self, purpose: Purpose) -> Generator:
+        draws = self._streams.get(purpose)
+        if draws is None:
+            draws = self._streams[purpose] = stream(self._seed, self.index, purpose)
+        return draws

@@ -1,0 +1,141 @@
+"""What a robot senses: the ring of eight proximity sensors and the walls (sections 2.2, 2.3).
+
+Compiled functions of plain numbers and arrays. The arena is the square |x|, |y| ≤ `half`;
+lengths in metres, angles in radians.
+"""
+
+import math
+from typing import Final
+
+import numpy as np
+
+from agents.body import SENSORS
+from agents.compiled import compiled
+from agents.fleet import Floats, Integers
+
+SECTOR: Final = 2.0 * math.pi / SENSORS
+"""Angle covered by one sensor (rad)."""
+
+
+@compiled
+def wrap(angle: float) -> float:
+    """Return the same direction in (−π, π]."""
+    return angle - 2.0 * math.pi * math.ceil((angle - math.pi) / (2.0 * math.pi))
+
+
+@compiled
+def wall_ray(x: float, y: float, direction: float, half: float) -> float:
+    """Return the distance from (x, y) along `direction` to the wall it meets."""
+    dx = math.cos(direction)
+    dy = math.sin(direction)
+    along_x = (half - x) / dx if dx > 0.0 else ((-half - x) / dx if dx < 0.0 else math.inf)
+    along_y = (half - y) / dy if dy > 0.0 else ((-half - y) / dy if dy < 0.0 else math.inf)
+    return min(along_x, along_y)
+
+
+@compiled
+def walls_met(x: float, y: float, heading: float, half: float, reach: float, half_angle: float) -> int:
+    """Return which walls the robot is about to run into.
+
+    A wall counts if the robot heads towards it and one of the rays ahead (one, or three where
+    `half_angle` is not 0) meets it nearer than `reach`.
+
+    Parameters
+    ----------
+    x, y : float
+        Centre of the robot.
+    heading : float
+        Its direction.
+    half : float
+        Half the side of the arena.
+    reach : float
+        Distance from the centre within which a wall counts.
+    half_angle : float
+        Angle between the ray ahead and those at its sides, 0 for the ray ahead alone.
+
+    Returns
+    -------
+    int
+        Sum of 1 (x = +half), 2 (x = −half), 4 (y = +half), 8 (y = −half).
+    """
+    met = 0
+    if half - max(abs(x), abs(y)) >= reach:
+        return met
+    for wall in range(4):
+        ahead = math.cos(heading - _wall_direction(wall))
+        if ahead <= 0.0:
+            continue
+        distance = half - (x, -x, y, -y)[wall]
+        nearest = distance / ahead
+        if half_angle > 0.0:
+            for side in (-half_angle, half_angle):
+                ahead = math.cos(heading + side - _wall_direction(wall))
+                if ahead > 0.0:
+                    nearest = min(nearest, distance / ahead)
+        if nearest < reach:
+            met += 1 << wall
+    return met
+
+
+@compiled
+def heads_for(heading: float, walls: int) -> bool:
+    """Return whether `heading` has a component towards any of `walls` (sum as in `walls_met`)."""
+    for wall in range(4):
+        if walls >> wall & 1 and math.cos(heading - _wall_direction(wall)) > 0.0:
+            return True
+    return False
+
+
+@compiled
+def _wall_direction(wall: int) -> float:
+    return (0.0, math.pi, 0.5 * math.pi, -0.5 * math.pi)[wall]
+
+
+@compiled
+def sense(
+    robot: int,
+    heading: float,
+    positions: Floats,
+    others: Integers,
+    n_others: int,
+    radius: float,
+    half: float,
+    free: Floats,
+) -> None:
+    """Measure the free distance of each of the eight sensors of a robot.
+
+    The smaller of the wall along the middle of the sensor and the nearest surface of another robot
+    whose centre lies in its sector; both from the own surface, without a limit of range.
+
+    Parameters
+    ----------
+    robot : int
+        The robot that senses.
+    heading : float
+        Its direction.
+    positions : ndarray of float64, shape (n, 2)
+        Of all robots.
+    others : ndarray of int64, shape (≥ n_others,)
+        Robots that may be in range; `robot` itself is passed over.
+    n_others : int
+        How many of them count.
+    radius : float
+        Radius of every body.
+    half : float
+        Half the side of the arena.
+    free : ndarray of float64, shape (8,)
+        Receives the distances, the sensor ahead first, then counter-clockwise.
+    """
+    x = positions[robot, 0]
+    y = positions[robot, 1]
+    for sensor in range(SENSORS):
+        free[sensor] = wall_ray(x, y, heading + sensor * SECTOR, half) - radius
+    for k in range(n_others):
+        other = others[k]
+        if other == robot:
+            continue
+        dx = positions[other, 0] - x
+        dy = positions[other, 1] - y
+        gap = math.sqrt(dx * dx + dy * dy) - 2.0 * radius
+        sensor = int(np.floor((math.atan2(dy, dx) - heading) / SECTOR + 0.5)) % SENSORS
+        free[sensor] = min(free[sensor], gap)

@@ -1,0 +1,183 @@
+"""The first figure of each scenario, from the rows of `runs.parquet`.
+
+Figures are plain `matplotlib.figure.Figure` objects: no window opens and no global setting changes.
+"""
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from io import BytesIO
+from pathlib import Path
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from agents.errors import InputError
+from analysis.drawing import curves_of, draw_curves, page, scale_from_zero
+from analysis.results import read_runs
+
+DOTS_PER_INCH = 150
+
+
+def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "") -> Figure:
+    """Draw the pucks deposited in the measured game over the number of robots, for each swarm.
+
+    Parameters
+    ----------
+    runs : pandas.DataFrame
+        Rows of `runs.parquet`, as `analysis.results.read_runs` returns them.
+    scenario : str
+        Id of the scenario to draw; its conditions, if several, are drawn as a curve each.
+    title : str
+        What the scenario is, printed after its id.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        `runs` has no row of the scenario.
+    """
+    rows = _of(runs, scenario)
+    with page(rows, _heading(scenario, title)) as figure:
+        axes = figure.subplots()
+        draw_curves(axes, curves_of(rows), "pucks")
+        axes.set_ylabel("pucks deposited by the swarm")
+        scale_from_zero(axes, rows["pucks"])
+    return figure
+
+
+def time_shares(runs: pd.DataFrame, scenario: str, title: str = "") -> Figure:
+    """Draw the share of time in conflict, T(a) / (T(a) + T(p)), over the number of robots (Fig. 6.3).
+
+    Parameters
+    ----------
+    runs, scenario, title
+        As for `pucks_over_n`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three panels of one scale: all conflicts, those with other swarms, those within the own.
+
+    Raises
+    ------
+    InputError
+        `runs` has no row of the scenario.
+    """
+    rows = _of(runs, scenario)
+    in_conflict = rows["t_a_intra"] + rows["t_a_inter"]
+    lived = in_conflict + rows["t_p"]
+    times = {"total": in_conflict, "inter-swarm": rows["t_a_inter"], "intra-swarm": rows["t_a_intra"]}
+    rows = rows.assign(**{kind: time / lived for kind, time in times.items()})
+    with page(rows, _heading(scenario, title), width=11.0) as figure:
+        panels: Sequence[Axes] = figure.subplots(1, len(times), sharey=True)
+        for axes, kind in zip(panels, times, strict=True):
+            draw_curves(axes, curves_of(rows), kind)
+            axes.set_title(kind)
+            axes.set_ylabel("share of time, T(a) / (T(a) + T(p))")
+            axes.label_outer()
+        scale_from_zero(panels[0], rows["total"])
+    return figure
+
+
+def sud_over_n(runs: pd.DataFrame, scenario: str, title: str = "", swarm: int = 2) -> Figure:
+    """Draw the Swarm Utility Difference (Eq. 3.7) of one swarm over the number of robots.
+
+    Parameters
+    ----------
+    runs, scenario, title
+        As for `pucks_over_n`.
+    swarm : int
+        Number of the swarm, 1 … K; the source shows S2.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        `runs` has no row of the scenario, or none of that swarm in it.
+    """
+    rows = _of(runs, scenario)
+    swarms = sorted(set(rows["swarm"]))
+    if swarm not in swarms:
+        raise InputError("swarm", swarm, f"must be one of {', '.join(map(str, swarms))} in {scenario}")
+    rows = rows[rows["swarm"] == swarm]
+    with page(rows, _heading(scenario, title)) as figure:
+        axes = figure.subplots()
+        axes.axhline(0, color="0.4", linewidth=1)
+        draw_curves(axes, curves_of(rows), "sud")
+        axes.set_ylabel(f"SUD of S{swarm} (pucks)")
+    return figure
+
+
+# What a scenario shows, where it is not pucks.
+_SHOWN_BY: Mapping[str, Callable[[pd.DataFrame, str, str], Figure]] = {
+    "fig-6.3": time_shares,
+    "fig-7.10": sud_over_n,
+}
+
+
+def draw(results_dir: Path, scenario_ids: Sequence[str], titles: Mapping[str, str]) -> list[Path]:
+    """Write `figures/<id>.png` in a results directory for each of the scenarios that it has runs of.
+
+    Parameters
+    ----------
+    results_dir : Path
+        A directory that holds `runs.parquet`.
+    scenario_ids : sequence of str
+        Scenarios asked for; one without runs is left out.
+    titles : mapping of str to str
+        What each scenario is, printed after its id; an id may be absent.
+
+    Returns
+    -------
+    list of Path
+        The files written, in the order of `scenario_ids`. Each is written whole or not at all.
+
+    Raises
+    ------
+    InputError
+        The runs cannot be read or the figures cannot be written.
+    """
+    runs = read_runs(results_dir)
+    present = set(runs["scenario"])
+    paths = []
+    for scenario in scenario_ids:
+        if scenario not in present:
+            continue
+        figure = _SHOWN_BY.get(scenario, pucks_over_n)(runs, scenario, titles.get(scenario, ""))
+        path = results_dir / "figures" / f"{scenario}.png"
+        _write(figure, path)
+        paths.append(path)
+    return paths
+
+
+def _of(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
+    rows = runs[runs["scenario"] == scenario]
+    if rows.empty:
+        raise InputError("scenario", scenario, f"must be one of {', '.join(sorted(set(runs['scenario'])))}")
+    return rows
+
+
+def _heading(scenario: str, title: str) -> str:
+    return f"{scenario}: {title}" if title else scenario
+
+
+def _write(figure: Figure, path: Path) -> None:
+    picture = BytesIO()
+    figure.savefig(picture, format="png", dpi=DOTS_PER_INCH)
+    part = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        path.parent.mkdir(exist_ok=True)
+        try:
+            part.write_bytes(picture.getvalue())
+            part.replace(path)
+        finally:
+            part.unlink(missing_ok=True)
+    except OSError as error:
+        raise InputError("figures", str(path), "must be a place that can be written") from error

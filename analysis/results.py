@@ -1,0 +1,79 @@
+"""Reading the tables of a results directory (section 3.5 of the experiments)."""
+
+from pathlib import Path
+
+import pandas as pd
+from pandas.api.types import is_numeric_dtype
+
+from agents.errors import InputError
+
+RUNS_FILE = "runs.parquet"
+
+RUNS_TEXT = ("run", "scenario", "condition", "policy", "ended")
+RUNS_NUMBERS = (
+    "n",
+    "seed",
+    "swarm",
+    "size",
+    "pucks",
+    "sud",
+    "t_a_intra",
+    "t_a_inter",
+    "t_p",
+    "conflicts_intra",
+    "conflicts_inter",
+    "duration",
+)
+
+# What pandas and Arrow raise on damaged bytes: mostly OSError or ValueError, the others where the
+# description of the columns is damaged.
+_DAMAGE = (OSError, ValueError, LookupError, TypeError, RuntimeError)
+
+
+def read_runs(directory: Path) -> pd.DataFrame:
+    """Read `runs.parquet`, one row for each (run, swarm), and check that it keeps the results contract.
+
+    Parameters
+    ----------
+    directory : Path
+        The results directory that `kswarms run --out` wrote.
+
+    Returns
+    -------
+    pandas.DataFrame
+        At least one row; the columns `RUNS_TEXT` (str) and `RUNS_NUMBERS` (numbers, none missing; times in
+        robot-seconds, `duration` in seconds), and whatever other columns the file has.
+
+    Raises
+    ------
+    InputError
+        The directory or the file is missing or cannot be read, there is no row, or a column is missing, has
+        gaps or is of the wrong kind.
+    """
+    if not directory.is_dir():
+        raise InputError("results", str(directory), "must be a directory that `kswarms run` wrote")
+    path = directory / RUNS_FILE
+    if not path.is_file():
+        raise InputError("results", str(directory), f"must be a directory that holds {RUNS_FILE}")
+    try:
+        runs = pd.read_parquet(path)
+    except _DAMAGE as error:
+        raise InputError("results", str(path), "must be a readable Parquet file") from error
+    _check(runs, path)
+    return runs.astype(dict.fromkeys(RUNS_TEXT, str))
+
+
+def _check(runs: pd.DataFrame, path: Path) -> None:
+    missing = [name for name in (*RUNS_TEXT, *RUNS_NUMBERS) if name not in runs.columns]
+    if missing:
+        raise InputError("results", str(path), f"must have the missing columns {', '.join(missing)}")
+    if runs.empty:
+        raise InputError("results", str(path), "must hold at least one run")
+    for name in (*RUNS_TEXT, *RUNS_NUMBERS):
+        if runs[name].isna().any():
+            raise InputError(f"{path.name} column {name}", None, "must be given in every row")
+    for name in RUNS_NUMBERS:
+        if not is_numeric_dtype(runs[name]):
+            raise InputError(
+                f"{path.name} column {name}", str(runs[name].dtype), "must be a column of numbers"
+            )

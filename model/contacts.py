@@ -1,0 +1,294 @@
+"""Bodies that touch: slide with Coulomb friction, wedges relax (specification, section 2.5).
+
+A robot that drives into a body or a wall loses the normal part of its motion against it and slides
+along it; the tangential part shrinks by μ times the normal displacement that was blocked. Two that
+drive into each other share the gap that is left in proportion to their speeds. A robot with several
+contacts meets them in the order of what each blocks, the most blocking first, each once; the overlap
+that is left (a wedge) is relaxed by equal shares until it is below the tolerance. Each pass works on
+the positions that all bodies had before it, so no robot profits from its number. Compiled.
+"""
+
+import math
+from typing import Final
+
+from agents.compiled import compiled
+from agents.fleet import Floats, Integers, Records
+from model.world import MAX_CONTACTS
+
+TOLERANCE: Final = 0.9e-4
+"""Overlap at which the relaxation stops (m); the specification allows 0.1 mm."""
+
+_CLOSE: Final = 0.1
+"""Gap below which the relaxation keeps an eye on a pair, as a part of the radius."""
+_PLAIN_PASSES: Final = 3
+"""Passes before the relaxation gathers momentum: enough for all but jams."""
+_MOMENTUM: Final = 0.8
+_PASSES: Final = 200
+"""Passes of the relaxation before it looks again at which pairs are close."""
+_ROUNDS: Final = 50
+
+
+@compiled
+def translate(
+    positions: Floats, robots: Records, world: Records, work: Records, contacts: Records, pairs: Records
+) -> None:
+    """Move all bodies by one period.
+
+    Parameters
+    ----------
+    positions : ndarray of float64, shape (n, 2)
+        Centres (m); written.
+    robots : ndarray of `agents.fleet.ROBOT`, shape (n,)
+        Who drives where.
+    world : ndarray of `model.world.WORLD`, shape (1,)
+        Size of the bodies and the arena, friction and push share.
+    work : ndarray of `model.world.WORK`, shape (n,)
+        Written: moves, shoves and numbers of contacts.
+    contacts : ndarray of `model.world.CONTACT`, shape (n, MAX_CONTACTS)
+        Written.
+    pairs : ndarray of `model.world.PAIR`, shape (capacity,)
+        All pairs that can touch; written: which are close.
+    """
+    radius, half, n_pairs = world["radius"][0], world["half"][0], world["n_pairs"][0]
+    friction, push_share = world["friction"][0], world["push_share"][0]
+    stride, forward_x, forward_y = robots["stride"], robots["forward_x"], robots["forward_y"]
+    move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
+    count = work["count"]
+    n = len(positions)
+    fastest = 0.0
+    for i in range(n):
+        fastest = max(fastest, stride[i])
+        move_x[i] = stride[i] * forward_x[i]
+        move_y[i] = stride[i] * forward_y[i]
+        shove_x[i] = 0.0
+        shove_y[i] = 0.0
+        count[i] = 0
+    _meet_bodies(positions, radius, fastest, push_share, work, contacts, pairs, n_pairs)
+    _meet_walls(positions, radius, half, work, contacts)
+    crowded = False
+    for i in range(n):
+        if count[i] > 0:
+            crowded = True
+            move_x[i], move_y[i] = _slide(move_x[i], move_y[i], friction, contacts[i], count[i])
+        positions[i, 0] += move_x[i] + shove_x[i]
+        positions[i, 1] += move_y[i] + shove_y[i]
+    if crowded:
+        relax(positions, radius, half, work, pairs, n_pairs)
+
+
+@compiled
+def _meet_bodies(
+    positions: Floats,
+    radius: float,
+    fastest: float,
+    push_share: float,
+    work: Records,
+    contacts: Records,
+    pairs: Records,
+    n_pairs: int,
+) -> None:
+    """Find the pairs that would overlap, and how much of whose motion each blocks."""
+    move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
+    count, first, second = work["count"], pairs["first"], pairs["second"]
+    reach = 2.0 * radius + 2.0 * fastest
+    for k in range(n_pairs):
+        i = first[k]
+        j = second[k]
+        dx = positions[j, 0] - positions[i, 0]
+        dy = positions[j, 1] - positions[i, 1]
+        squared = dx * dx + dy * dy
+        if squared >= reach * reach:
+            continue
+        distance = math.sqrt(squared)
+        if distance == 0.0:
+            continue  # no direction: the relaxation parts them
+        dx /= distance
+        dy /= distance
+        gap = max(0.0, distance - 2.0 * radius)
+        towards_j = move_x[i] * dx + move_y[i] * dy
+        towards_i = -(move_x[j] * dx + move_y[j] * dy)
+        excess = towards_j + towards_i - gap
+        if excess <= 0.0:
+            continue
+        driven = max(0.0, towards_j) + max(0.0, towards_i)
+        if towards_j > 0.0:
+            share = excess * towards_j / driven
+            _add_contact(contacts[i], count, i, dx, dy, towards_j, (1.0 - push_share) * share)
+            shove_x[j] += push_share * share * dx
+            shove_y[j] += push_share * share * dy
+        if towards_i > 0.0:
+            share = excess * towards_i / driven
+            _add_contact(contacts[j], count, j, -dx, -dy, towards_i, (1.0 - push_share) * share)
+            shove_x[i] -= push_share * share * dx
+            shove_y[i] -= push_share * share * dy
+
+
+@compiled
+def _meet_walls(positions: Floats, radius: float, half: float, work: Records, contacts: Records) -> None:
+    """Find who would leave the arena."""
+    move_x, move_y, count = work["move_x"], work["move_y"], work["count"]
+    for i in range(len(positions)):
+        for axis in range(2):
+            move = move_x[i] if axis == 0 else move_y[i]
+            sign = 1.0 if move > 0.0 else -1.0
+            towards = sign * move
+            gap = max(0.0, half - radius - sign * positions[i, axis])
+            if towards > gap:
+                nx = sign if axis == 0 else 0.0
+                ny = sign if axis == 1 else 0.0
+                _add_contact(contacts[i], count, i, nx, ny, towards, towards - gap)
+
+
+@compiled
+def _add_contact(
+    contacts: Records, count: Integers, robot: int, x: float, y: float, towards: float, blocked: float
+) -> None:
+    k = count[robot]
+    if k < MAX_CONTACTS:
+        contacts["x"][k] = x
+        contacts["y"][k] = y
+        contacts["allowed"][k] = towards - blocked
+        contacts["blocked"][k] = blocked
+        count[robot] = k + 1
+
+
+@compiled
+def _slide(x: float, y: float, friction: float, contacts: Records, count: int) -> tuple[float, float]:
+    """Take from a robot's motion (x, y) what its contacts block, and what their friction costs."""
+    normal_x, normal_y = contacts["x"], contacts["y"]
+    allowed, blocked = contacts["allowed"], contacts["blocked"]
+    for _ in range(count):
+        worst = 0
+        for k in range(1, count):
+            if blocked[k] > blocked[worst]:
+                worst = k
+        blocked[worst] = -1.0  # met: not to be found again
+        nx = normal_x[worst]
+        ny = normal_y[worst]
+        normal = x * nx + y * ny
+        excess = normal - allowed[worst]
+        if excess <= 0.0:
+            continue
+        tangential = y * nx - x * ny
+        slid = max(0.0, abs(tangential) - friction * excess)
+        tangential = slid if tangential > 0.0 else -slid
+        x = allowed[worst] * nx - tangential * ny
+        y = allowed[worst] * ny + tangential * nx
+    return x, y
+
+
+@compiled
+def relax(positions: Floats, radius: float, half: float, work: Records, pairs: Records, n_pairs: int) -> int:
+    """Part overlapping bodies by equal shares, and keep them within the walls.
+
+    Parameters
+    ----------
+    positions : ndarray of float64, shape (n, 2)
+        Centres (m); written.
+    radius, half : float
+        Of the bodies; half the side of the arena (m).
+    work : ndarray of `model.world.WORK`, shape (n,)
+        Written: ``move``, ``shove`` and ``count``.
+    pairs : ndarray of `model.world.PAIR`, shape (≥ n_pairs,)
+        All pairs that can overlap; written: ``close``.
+    n_pairs : int
+        How many there are.
+
+    Returns
+    -------
+    int
+        Passes that were needed.
+    """
+    move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
+    count, limit = work["count"], half - radius
+    for i in range(len(positions)):
+        positions[i, 0] = min(limit, max(-limit, positions[i, 0]))
+        positions[i, 1] = min(limit, max(-limit, positions[i, 1]))
+        move_x[i] = 0.0
+        move_y[i] = 0.0
+        shove_x[i] = 0.0
+        shove_y[i] = 0.0
+        count[i] = 0
+    done = 0
+    for _ in range(_ROUNDS):
+        n_close, worst = _find_close(positions, radius, pairs, n_pairs)
+        if worst <= TOLERANCE:
+            break
+        for _ in range(_PASSES):
+            worst = _measure_overlaps(positions, radius, work, pairs, n_close)
+            _part(positions, limit, work, 0.0 if done < _PLAIN_PASSES else _MOMENTUM)
+            if worst <= TOLERANCE:
+                break
+            done += 1
+    return done
+
+
+@compiled
+def _find_close(positions: Floats, radius: float, pairs: Records, n_pairs: int) -> tuple[int, float]:
+    """List the pairs with hardly a gap, and return their number and the greatest overlap (m)."""
+    first, second, close = pairs["first"], pairs["second"], pairs["close"]
+    reach = (2.0 + _CLOSE) * radius
+    nearest = reach * reach
+    n_close = 0
+    for k in range(n_pairs):
+        dx = positions[second[k], 0] - positions[first[k], 0]
+        dy = positions[second[k], 1] - positions[first[k], 1]
+        squared = dx * dx + dy * dy
+        if squared < reach * reach:
+            close[n_close] = k
+            n_close += 1
+            nearest = min(nearest, squared)
+    return n_close, 2.0 * radius - math.sqrt(nearest)
+
+
+@compiled
+def _measure_overlaps(positions: Floats, radius: float, work: Records, pairs: Records, n_close: int) -> float:
+    """Add up, for each body, half of each of its overlaps; return the greatest overlap (m)."""
+    first, second, close = pairs["first"], pairs["second"], pairs["close"]
+    shove_x, shove_y, count = work["shove_x"], work["shove_y"], work["count"]
+    near = 2.0 * radius
+    worst = 0.0
+    for c in range(n_close):
+        i = first[close[c]]
+        j = second[close[c]]
+        dx = positions[j, 0] - positions[i, 0]
+        dy = positions[j, 1] - positions[i, 1]
+        squared = dx * dx + dy * dy
+        if squared >= near * near:
+            continue
+        distance = math.sqrt(squared)
+        overlap = near - distance
+        worst = max(worst, overlap)
+        if distance == 0.0:  # exactly on top of each other: part them along x
+            dx, distance = 1.0, 1.0
+        part = 0.5 * overlap / distance
+        shove_x[i] -= part * dx
+        shove_y[i] -= part * dy
+        shove_x[j] += part * dx
+        shove_y[j] += part * dy
+        count[i] += 1
+        count[j] += 1
+    return worst
+
+
+@compiled
+def _part(positions: Floats, limit: float, work: Records, momentum: float) -> None:
+    """Move the bodies apart as measured, not beyond the walls, and forget the measures.
+
+    A jam needs many passes, each of which carries a correction one body farther: a part of the last
+    pass's move is added, which makes it about five times fewer.
+    """
+    move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
+    count = work["count"]
+    for i in range(len(positions)):
+        if count[i] == 0 and move_x[i] == 0.0 and move_y[i] == 0.0:
+            continue
+        # Three and more corrections at once would overshoot: twice their mean does not.
+        scale = 1.0 if count[i] <= 2 else 2.0 / count[i]
+        move_x[i] = momentum * move_x[i] + scale * shove_x[i]
+        move_y[i] = momentum * move_y[i] + scale * shove_y[i]
+        positions[i, 0] = min(limit, max(-limit, positions[i, 0] + move_x[i]))
+        positions[i, 1] = min(limit, max(-limit, positions[i, 1] + move_y[i]))
+        shove_x[i] = 0.0
+        shove_y[i] = 0.0
+        count[i] = 0

@@ -1,0 +1,291 @@
+"""The game as a Mesa model whose clock is SimPy's (specification, section 2.6).
+
+The clock counts control periods, in whole numbers. At one instant the robots' own timeouts come first, in
+the order in which they were set; then, with a lower priority, the motion process: pick-ups and deposits,
+percepts of all robots at the same instant, decisions, motion. A sample and the end of the game come before
+everything else at their instant: they see the world as the last period left it.
+"""
+
+import math
+from collections.abc import Generator, Mapping
+from typing import Any, Final, cast
+
+import mesa
+import numpy as np
+import simpy
+from mesa.experimental.continuous_space import ContinuousSpace
+from simpy.core import StopSimulation
+from simpy.events import Event
+
+from agents.errors import InputError
+from agents.fleet import Fleet
+from agents.habits import Conflict, Habits
+from agents.krembot import Krembot
+from agents.policies import deal, make_policy
+from model import recording
+from model.game import Game
+from model.kernel import Kernel
+from model.percepts import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE
+from model.placement import start_poses
+
+_BEFORE_TIMEOUTS: Final = 0
+"""SimPy priority of the end of the game, as of the ends of `Environment.run`; timeouts have 1."""
+_AFTER_TIMEOUTS: Final = 2
+"""SimPy priority of the motion process."""
+
+
+class Instant(Event):
+    """An event that just happens, at a given priority among the events of its instant."""
+
+    def __init__(self, env: simpy.Environment, delay: int, priority: int) -> None:
+        self.env = env
+        self.callbacks = []
+        self._ok = True
+        self._value = None
+        env.schedule(self, priority, delay)  # type: ignore[arg-type]  # SimPy only names two of the priorities
+
+
+class GameModel(mesa.Model):
+    """A game that is being played.
+
+    Parameters
+    ----------
+    game : Game
+        What is played.
+    seed : int
+        Seed of the run, ≥ 0: names all random streams, together with robot and purpose.
+    record : str
+        What to keep, a comma-separated list of `model.recording.RECORDS`; nothing if empty.
+    sample_period : float
+        Time between two samples, and of one `step` (s).
+
+    Attributes
+    ----------
+    env : simpy.Environment
+        The clock; counts control periods.
+    space : mesa.experimental.continuous_space.ContinuousSpace
+        Where the robots are; the kernel works on its array of positions.
+    robots : list of Krembot
+        All robots by number; S1's first.
+    members : list of list of Krembot
+        The robots of each swarm.
+    pucks : list of int
+        Pucks deposited by each swarm.
+    picked_up : int
+        Pucks picked up by all.
+    ended : {'', 'time', 'pucks', 'cap'}
+        Why the game is over; empty while it is not.
+    sample_times : list of float
+        When the DataCollector sampled (s).
+    conflict_log : list of Conflict, optional
+        Closed conflicts that are not in the DataCollector's table yet, if conflicts are recorded.
+
+    Raises
+    ------
+    InputError
+        If a parameter is not allowed or the robots find no place.
+    """
+
+    def __init__(self, game: Game, seed: int = 0, record: str = "", sample_period: float = 10.0) -> None:
+        if not isinstance(seed, int | np.integer) or seed < 0:
+            raise InputError("seed", seed, "must be a whole number ≥ 0")
+        if not 0 < sample_period < math.inf:
+            raise InputError("sample_period", sample_period, "must be a number of seconds > 0")
+        recorded = recording.parse_record(record)
+        super().__init__(seed=int(seed))
+        self.game = game
+        self.seed = int(seed)
+        self.env = simpy.Environment()
+        self.arena = game.arena(self.seed)
+        self.habits = _habits(game)
+        self.action_periods: Mapping[str, int] = {
+            a.name: self.habits.periods(a.duration) for a in game.action_set
+        }
+        self.conflict_log: list[Conflict] | None = [] if "conflicts" in recorded else None
+        self.pucks = [0] * len(game.swarms)
+        self.picked_up = 0
+        self.ended = ""
+        self._populate()
+        self._swarm_of: list[int] = self.fleet.swarm.tolist()
+        self._kernel = Kernel(game, self.arena, self.fleet)
+        self._end = self.habits.periods(game.duration)
+        Instant(self.env, self._end, _BEFORE_TIMEOUTS).callbacks.append(self._time_is_up)
+        self._sample_every = self.habits.periods(sample_period)
+        self.env.process(self._motion())
+        self._recorded = recorded
+        self.sample_times: list[float] = []
+        self.datacollector = recording.make_collector(len(game.swarms), recorded)
+        self._collect()
+
+    @property
+    def time(self) -> float:
+        """Seconds played."""
+        return float(self.env.now * self.game.parameters.period)
+
+    @property
+    def supply(self) -> list[int]:
+        """Pucks left at each station, −1 where there is no limit."""
+        return [int(pucks) for pucks in self._kernel.supply]
+
+    def step(self) -> None:
+        """Play one sampling period and sample; after the end, only say that the model stopped."""
+        if self.ended:
+            self.running = False
+            return
+        now = int(self.env.now)
+        self.env.run(until=now - now % self._sample_every + self._sample_every)
+        self._collect()
+
+    def play(self) -> None:
+        """Play to the end of the game, sampling on the way only if samples are recorded."""
+        if self._recorded & {"model", "agents", "trajectory"}:
+            while self.running:
+                self.step()
+            return
+        if not self.ended:
+            self.env.run()
+            self._collect()
+        self.running = False
+
+    def times(self, swarm: int) -> tuple[list[int], int]:
+        """Return a swarm's T(a), by the opponent's swarm, and T(p), up to now (robot-periods)."""
+        t_a = [0] * len(self.members)
+        t_p = 0
+        for robot in self.members[swarm]:
+            own_t_a, own_t_p = robot.times()
+            t_a = [a + b for a, b in zip(t_a, own_t_a, strict=True)]
+            t_p += own_t_p
+        return t_a, t_p
+
+    def results(self) -> list[dict[str, Any]]:
+        """Return one row for each swarm: the columns of ``runs.parquet`` from ``swarm`` on."""
+        return recording.result_rows(self)
+
+    def tables(self) -> dict[str, recording.Table]:
+        """Return the recorded tables (conflicts, robots, trajectory) by name, columns of equal length."""
+        tables: dict[str, recording.Table] = {}
+        if "conflicts" in self._recorded:
+            tables["conflicts"] = self.datacollector.tables["conflicts"]
+        if "robots" in self._recorded:
+            tables["robots"] = recording.robots_table(self)
+        if "trajectory" in self._recorded:
+            tables["trajectory"] = recording.trajectory_table(self)
+        return tables
+
+    def _populate(self) -> None:
+        """Put the robots into the space, at rest."""
+        game, body, parameters = self.game, self.game.body_preset, self.game.parameters
+        half = self.arena.half
+        positions, headings = start_poses(
+            game.size, self.seed, half, body.radius, parameters.clearance, parameters.wall_clearance
+        )
+        self.space = ContinuousSpace(
+            [[-half, half], [-half, half]], torus=False, random=self.random, n_agents=game.size
+        )
+        swarm_of = np.repeat(np.arange(len(game.swarms)), [swarm.size for swarm in game.swarms])
+        # The space's own array, so that Mesa's view of the positions is the kernel's.
+        self.fleet = Fleet(self.space._agent_positions, swarm_of, headings)
+        self.members: list[list[Krembot]] = []
+        index = 0
+        for k, swarm in enumerate(game.swarms):
+            strides = (parameters.period * body.top_speed * d for d in (swarm.drive, swarm.drive_action))
+            stride_program, stride_action = strides
+            self.members.append([])
+            for name in deal(swarm.policy, swarm.size):
+                policy = make_policy(name, k, game.action_set)
+                robot = Krembot(self, index, k, policy, name, stride_program, stride_action, len(game.swarms))
+                self.members[k].append(robot)
+                index += 1
+        self.robots = [robot for members in self.members for robot in members]
+        self.fleet.positions[:] = positions
+
+    def _time_is_up(self, _: Event) -> None:
+        if not self.ended:
+            self._finish("time" if self.game.puck_limit is None else "cap")
+            raise StopSimulation(None)
+
+    def _finish(self, why: str) -> None:
+        self.ended = why
+        for robot in self.robots:
+            robot.close(int(self.env.now))
+
+    def _collect(self) -> None:
+        if self.conflict_log:
+            recording.add_conflicts(self, self.conflict_log)
+            self.conflict_log.clear()
+        self.sample_times.append(self.time)
+        self.datacollector.collect(self)
+
+    def _motion(self) -> Generator[Event, None, None]:
+        """Move the bodies from decision to decision, and have the robots decide."""
+        env, advance = self.env, self._kernel.advance
+        yield Instant(env, 0, _AFTER_TIMEOUTS)
+        while True:
+            now = int(env.now)
+            tick, size = advance(now, cast(int, env.peek()))
+            if tick > now or size == 0:
+                yield Instant(env, tick - now, _AFTER_TIMEOUTS)
+            if size > 0:
+                self._decide(tick, size)
+                if self.ended:
+                    stop = env.event()
+                    stop.callbacks.append(StopSimulation.callback)
+                    stop.succeed()
+                    return
+
+    def _decide(self, now: int, size: int) -> None:
+        """Hand the first `size` events of the kernel to their robots, in the order of their numbers."""
+        robots, swarm_of = self.robots, self._swarm_of
+        pick_ups = []
+        for index, kind, other, active, vacant, angle in self._kernel.events[:size].tolist():
+            robot = robots[index]
+            if kind == CONFLICT:
+                robot.meet(now, other, swarm_of[other], angle, active, vacant)
+            elif kind == LEG_DUE:
+                robot.begin_leg()
+            elif kind == TURN_DUE:
+                robot.begin_wander_turn()
+            elif kind == HOMING:
+                robot.go_home(angle)
+            elif kind == PICK_UP:
+                pick_ups.append((robot, other))
+            elif kind == DEPOSIT:
+                robot.deposit()
+                self.pucks[robot.swarm] += 1
+                if self.game.puck_limit is not None and sum(self.pucks) >= self.game.puck_limit:
+                    self._finish("pucks")
+                    return
+            else:
+                robot.begin_wall_turn()
+        if pick_ups:
+            self._hand_out(pick_ups)
+
+    def _hand_out(self, pick_ups: list[tuple[Krembot, int]]) -> None:
+        """Give pucks to those who stand on a station, the nearest to its middle first where they are few."""
+        supply = self._kernel.supply
+
+        def distance(request: tuple[Krembot, int]) -> float:
+            robot, station = request
+            return math.dist(self.fleet.positions[robot.index], self.arena.stations[station])
+
+        for robot, station in sorted(pick_ups, key=distance):
+            if supply[station] == 0:
+                continue
+            if supply[station] > 0:
+                supply[station] -= 1
+            self.picked_up += 1
+            robot.pick_up()
+
+
+def _habits(game: Game) -> Habits:
+    parameters, body = game.parameters, game.body_preset
+    return Habits(
+        period=parameters.period,
+        turn_step=parameters.turning_rate * parameters.period,
+        leg_mean=parameters.leg_mean,
+        wander_turn=parameters.wander_turn,
+        half=game.side / 2,
+        wall_reach=body.radius + body.sensing_scale * parameters.wall_distance,
+        wall_half_angle=parameters.wall_half_angle,
+        escape_away=parameters.wall_escape == "away",
+    )

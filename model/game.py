@@ -1,0 +1,166 @@
+"""A game as data: who plays, where, for how long. Everything that decides what is simulated, but the seed."""
+
+import math
+from collections.abc import Sequence
+from typing import Self
+
+from pydantic import Field, model_validator
+
+from agents.actions import Action
+from agents.body import BODIES, Body
+from agents.errors import InputError
+from agents.policies import deal, make_policy
+from agents.validation import Checked
+from model.arena import LAYOUTS, Arena, build_arena
+from model.parameters import PRESETS, Parameters
+
+SMALLEST_PART = 0.5
+"""Part of its radius that a robot may at most cover in a period, so that contacts are not jumped over."""
+
+
+class Swarm(Checked):
+    """One swarm.
+
+    Attributes
+    ----------
+    policy : str
+        Policy of its robots, or several, dealt out (see `agents.policies.deal`).
+    size : int
+        Robots in it.
+    drive, drive_action : float
+        Drive command in state P and in state A, as a part of the top speed.
+    """
+
+    policy: str
+    size: int = Field(ge=1)
+    drive: float = Field(0.6, gt=0, le=1)
+    drive_action: float = Field(0.6, gt=0, le=1)
+
+
+class Game(Checked):
+    """A game.
+
+    Attributes
+    ----------
+    swarms : tuple of Swarm
+        The swarms, S1 first.
+    layout : str
+        Where stations and bases are: one of `model.arena.LAYOUTS`.
+    parameters : Parameters
+        The free parameters of the world.
+    body : str
+        One of `agents.body.BODIES`.
+    actions : tuple of Action
+        What a robot can do at a conflict; empty for flight and fight with the parameters' durations.
+    side : float
+        Side of the arena (m); the layouts, given for 2 m, scale with it.
+    duration : float
+        Length of the game, or the longest it may take if there is a puck limit (s).
+    puck_limit : int, optional
+        The game ends with this puck deposited, over all swarms.
+    supply : int, optional
+        Pucks at each station; no limit if not given.
+
+    Raises
+    ------
+    InputError
+        If a field is out of range or the fields do not go together.
+    """
+
+    swarms: tuple[Swarm, ...] = Field(min_length=1)
+    layout: str = "symmetric"
+    parameters: Parameters = PRESETS["fitted"]
+    body: str = "krembot-sim"
+    actions: tuple[Action, ...] = ()
+    side: float = Field(2.0, gt=0)
+    duration: float = Field(600.0, gt=0)
+    puck_limit: int | None = Field(None, ge=1)
+    supply: int | None = Field(None, ge=1)
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.layout not in LAYOUTS:
+            raise InputError("layout", self.layout, f"must be one of {', '.join(LAYOUTS)}")
+        if self.body not in BODIES:
+            raise InputError("body", self.body, f"must be one of {', '.join(BODIES)}")
+        names = [action.name for action in self.action_set]
+        if len(set(names)) < len(names):
+            raise InputError("actions", names, "must have different names")
+        for k, swarm in enumerate(self.swarms):
+            for name in set(deal(swarm.policy, len(swarm.policy.split("+")) + 1)):
+                make_policy(name, k, self.action_set)
+        step = self.parameters.period * self.body_preset.top_speed * max(s.drive for s in self.swarms)
+        if step > SMALLEST_PART * self.body_preset.radius:
+            raise InputError(
+                "period",
+                self.parameters.period,
+                "must be so short that a robot covers half its radius at most",
+            )
+        self._check_room()
+        return self
+
+    def _check_room(self) -> None:
+        parameters, body, n = self.parameters, self.body_preset, self.size
+        room = (self.side - 2 * parameters.wall_clearance) ** 2
+        if n * math.pi * (body.radius + parameters.clearance / 2) ** 2 > 0.54 * room:
+            # Discs put down at random, one after the other, jam when they cover 54.7 % of the ground.
+            raise InputError(
+                "n", n, f"robots of radius {body.radius} m do not fit in a square of {self.side} m"
+            )
+        if self.layout != "random-stations":
+            self.arena(0)
+
+    @property
+    def size(self) -> int:
+        """Robots in all, N."""
+        return sum(swarm.size for swarm in self.swarms)
+
+    @property
+    def body_preset(self) -> Body:
+        """The body by its name."""
+        return BODIES[self.body]
+
+    @property
+    def action_set(self) -> tuple[Action, ...]:
+        """The actions, flight and fight if none were given."""
+        return self.actions or self.parameters.actions()
+
+    def arena(self, seed: int) -> Arena:
+        """Build the arena; the seed matters to random stations alone.
+
+        Raises
+        ------
+        InputError
+            If stations, bases and walls overlap.
+        """
+        return build_arena(
+            self.layout,
+            len(self.swarms),
+            self.side,
+            self.parameters.station_radius,
+            self.parameters.base_radius,
+            seed,
+        )
+
+
+def apportion(n: int, shares: Sequence[int]) -> list[int]:
+    """Divide `n` robots among swarms in proportion: by largest remainder, ties to the first.
+
+    Parameters
+    ----------
+    n : int
+        Robots in all.
+    shares : sequence of int
+        Proportions, each ≥ 1.
+
+    Examples
+    --------
+    >>> apportion(6, [1, 2, 1])
+    [2, 3, 1]
+    """
+    whole = sum(shares)
+    sizes = [n * share // whole for share in shares]
+    by_remainder = sorted(range(len(shares)), key=lambda k: -(n * shares[k] % whole))
+    for k in by_remainder[: n - sum(sizes)]:
+        sizes[k] += 1
+    return sizes

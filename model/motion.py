@@ -1,0 +1,104 @@
+"""The motion kernel: moves all bodies until a robot must decide (specification, section 2.6). Compiled.
+
+A control period is: pick-ups and deposits, the percepts of all robots at the same instant,
+decisions, motion. The kernel stops wherever a decision is due, and is called again after it.
+"""
+
+import math
+from typing import Final
+
+from agents.compiled import compiled
+from agents.fleet import Floats, Integers, Records
+from agents.sensors import wrap
+from model.contacts import translate
+from model.neighbours import refresh
+from model.percepts import find_pucks, perceive
+
+# What comes next in a period.
+PUCKS: Final = 0
+PERCEPTS: Final = 1
+MOTION: Final = 2
+
+
+@compiled
+def advance(
+    positions: Floats,
+    robots: Records,
+    world: Records,
+    stations: Records,
+    bases: Floats,
+    work: Records,
+    contacts: Records,
+    pairs: Records,
+    cell_start: Integers,
+    events: Records,
+    tick: int,
+    until: int,
+) -> tuple[int, int]:
+    """Go on from period `tick` to the first decision, but not beyond the start of `until`.
+
+    Parameters
+    ----------
+    positions : ndarray of float64, shape (n, 2)
+        Centres (m); written.
+    robots : ndarray of `agents.fleet.ROBOT`, shape (n,)
+        Written: headings of those that turn.
+    world : ndarray of `model.world.WORLD`, shape (1,)
+        Written: where in its period the game is, and what the neighbour lists hold.
+    stations : ndarray of `model.world.STATION`, shape (m,)
+    bases : ndarray of float64, shape (K, 2)
+        Their middles (m).
+    work : ndarray of `model.world.WORK`, shape (n,)
+        Written.
+    contacts : ndarray of `model.world.CONTACT`, shape (n, MAX_CONTACTS)
+        Written.
+    pairs, cell_start
+        As in `model.neighbours.refresh`; written.
+    events : ndarray of `model.percepts.EVENT`, shape (n,)
+        Written: what the robots must decide on.
+    tick, until : int
+        Control period that it is now; the one at whose start something else is scheduled.
+
+    Returns
+    -------
+    tick, size : int
+        The period reached, and the number of events; with none, it is `until`.
+    """
+    heading, turn_rate = robots["heading"], robots["turn_rate"]
+    forward_x, forward_y = robots["forward_x"], robots["forward_y"]
+    stage, n_pairs = world["stage"], world["n_pairs"]
+    while tick < until or stage[0] != PUCKS:
+        if stage[0] == PUCKS:
+            stage[0] = PERCEPTS
+            size = find_pucks(positions, robots, world, stations, bases, events)
+            if size > 0:
+                return tick, size
+        if stage[0] == PERCEPTS:
+            stage[0] = MOTION
+            listed = refresh(
+                positions,
+                world["half"][0],
+                world["pair_reach"][0],
+                world["skin"][0],
+                work["origin_x"],
+                work["origin_y"],
+                pairs,
+                cell_start,
+                work["cell_robots"],
+            )
+            if listed >= 0:
+                n_pairs[0] = listed
+            size = perceive(positions, robots, world, bases, work, pairs, cell_start, events)
+            if size > 0:
+                return tick, size
+        if tick == until:
+            return tick, 0
+        for i in range(len(positions)):
+            if turn_rate[i] != 0.0:
+                heading[i] = wrap(heading[i] + turn_rate[i])
+                forward_x[i] = math.cos(heading[i])
+                forward_y[i] = math.sin(heading[i])
+        translate(positions, robots, world, work, contacts, pairs)
+        stage[0] = PUCKS
+        tick += 1
+    return tick, 0

@@ -1,0 +1,150 @@
+"""What is kept of a game: Mesa's DataCollector, the tables of records, the row of results (section 3.5)."""
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+from mesa import DataCollector
+
+from agents.errors import InputError
+from agents.habits import Conflict
+
+if TYPE_CHECKING:
+    from model.foraging import GameModel
+
+RECORDS: Final = ("model", "agents", "conflicts", "robots", "trajectory")
+"""What can be recorded: samples of the model, of the agents; tables of conflicts, robots, positions."""
+
+Table = dict[str, list[Any]]
+
+_CONFLICT_COLUMNS: Final = (
+    *("phase", "robot", "swarm", "opponent", "opponent_swarm", "start", "x", "y"),
+    *("action", "t_a", "t_p", "active", "reward", "q"),
+)
+
+
+def parse_record(text: str) -> frozenset[str]:
+    """Read a comma-separated list of `RECORDS`.
+
+    Raises
+    ------
+    InputError
+        If there is an unknown name in it.
+    """
+    names = frozenset(name.strip() for name in text.split(",") if name.strip())
+    for name in sorted(names):
+        if name not in RECORDS:
+            raise InputError("record", name, f"must be one of {', '.join(RECORDS)}")
+    return names
+
+
+def swarm_utility_difference(pucks: Sequence[int], swarm: int) -> int:
+    """Return SUD of a swarm on pucks: its own less all others' (Eq. 3.7)."""
+    return 2 * pucks[swarm] - sum(pucks)
+
+
+def make_collector(swarms: int, record: frozenset[str]) -> DataCollector:
+    """Build the DataCollector with what is to be recorded.
+
+    Model reporters: ``time`` (s) and for each swarm ``pucks_k``, ``sud_k``, ``share_a_k``, ``share_p_k``.
+    Agent reporters: swarm, state, puck, x, y, heading. Table: conflicts.
+    """
+    model_reporters: dict[str, Callable[[Any], Any]] = {}
+    if "model" in record:
+        model_reporters["time"] = lambda model: model.time
+        for k in range(swarms):
+            model_reporters |= _swarm_reporters(k)
+    agent_reporters: dict[str, Callable[[Any], Any]] = {}
+    if record & {"agents", "trajectory"}:
+        agent_reporters = {
+            "swarm": lambda robot: robot.swarm + 1,
+            "state": lambda robot: robot.state,
+            "puck": lambda robot: robot.carrying,
+            "x": lambda robot: float(robot.position[0]),
+            "y": lambda robot: float(robot.position[1]),
+            "heading": lambda robot: robot.heading,
+        }
+    tables = {"conflicts": list(_CONFLICT_COLUMNS)} if "conflicts" in record else {}
+    return DataCollector(model_reporters, agent_reporters, tables=tables)
+
+
+def _swarm_reporters(swarm: int) -> dict[str, Callable[[Any], Any]]:
+    return {
+        f"pucks_{swarm + 1}": lambda model: model.pucks[swarm],
+        f"sud_{swarm + 1}": lambda model: swarm_utility_difference(model.pucks, swarm),
+        f"share_a_{swarm + 1}": lambda model: _share_of_action(model, swarm),
+        f"share_p_{swarm + 1}": lambda model: 1.0 - _share_of_action(model, swarm),
+    }
+
+
+def _share_of_action(model: "GameModel", swarm: int) -> float:
+    """Return a swarm's T(a) / (T(a) + T(p)) so far, 0 at the very start."""
+    t_a, t_p = model.times(swarm)
+    played = sum(t_a) + t_p
+    return sum(t_a) / played if played > 0 else 0.0
+
+
+def add_conflicts(model: "GameModel", conflicts: Iterable[Conflict]) -> None:
+    """Write closed conflicts to the DataCollector's table, times in seconds, swarms counted from 1."""
+    period = model.game.parameters.period
+    for c in conflicts:
+        row = (
+            *("game", c.robot, model.robots[c.robot].swarm + 1),
+            *(c.opponent, model.robots[c.opponent].swarm + 1),
+            *(c.start * period, c.x, c.y, c.action.name, c.t_a * period, c.t_p * period, c.active),
+            *(float("nan"), float("nan")),
+        )
+        model.datacollector.add_table_row("conflicts", dict(zip(_CONFLICT_COLUMNS, row, strict=True)))
+
+
+def robots_table(model: "GameModel") -> Table:
+    """Return one row for each robot, times in seconds."""
+    period = model.game.parameters.period
+    times = [robot.times() for robot in model.robots]
+    return {
+        "robot": [robot.index for robot in model.robots],
+        "swarm": [robot.swarm + 1 for robot in model.robots],
+        "policy": [robot.policy_name for robot in model.robots],
+        "pucks": [robot.pucks for robot in model.robots],
+        "t_a": [sum(t_a) * period for t_a, _ in times],
+        "t_p": [t_p * period for _, t_p in times],
+    }
+
+
+def trajectory_table(model: "GameModel") -> Table:
+    """Return where every robot was at every sample."""
+    names = ("time", "robot", "x", "y", "heading", "state", "puck")
+    table: Table = {name: [] for name in names}
+    reporters = list(model.datacollector.agent_reporters)
+    for step, rows in model.datacollector._agent_records.items():
+        for row in rows:
+            seen = dict(zip(reporters, row[2:], strict=True))
+            seen |= {"time": model.sample_times[step], "robot": row[1] - 1}
+            for name in names:
+                table[name].append(seen[name])
+    return table
+
+
+def result_rows(model: "GameModel") -> list[dict[str, Any]]:
+    """Return one row for each swarm with the columns of ``runs.parquet`` that the game knows of."""
+    period = model.game.parameters.period
+    rows = []
+    for k, swarm in enumerate(model.game.swarms):
+        t_a, t_p = model.times(k)
+        conflicts = [sum(robot.conflicts[m] for robot in model.members[k]) for m in range(len(t_a))]
+        rows.append(
+            {
+                "swarm": k + 1,
+                "size": swarm.size,
+                "policy": swarm.policy,
+                "pucks": model.pucks[k],
+                "sud": swarm_utility_difference(model.pucks, k),
+                "t_a_intra": t_a[k] * period,
+                "t_a_inter": (sum(t_a) - t_a[k]) * period,
+                "t_p": t_p * period,
+                "conflicts_intra": conflicts[k],
+                "conflicts_inter": sum(conflicts) - conflicts[k],
+                "duration": model.time,
+                "ended": model.ended,
+            }
+        )
+    return rows

@@ -1,0 +1,1 @@
+"""Experiments: scenarios as data, their runs, the tables of results and the command line."""

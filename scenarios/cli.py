@@ -1,0 +1,213 @@
+"""The command line ``kswarms``: lists, shows and plays scenarios.
+
+What takes long to import is imported by the command that needs it.
+"""
+
+import difflib
+import os
+import shlex
+import sys
+import traceback
+from collections.abc import Iterable, Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import Annotated, Final
+
+import typer
+
+from agents.errors import InputError
+from scenarios.catalogue import CATALOGUE
+from scenarios.description import Scenario
+from scenarios.runner import RECORDS, RunError, play_all
+from scenarios.runs import Run, expand, package_version
+
+INTERRUPTED: Final = 130
+
+app = typer.Typer(
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    help="Competing swarms of foraging robots: play the scenarios of the catalogue and see who wins.",
+    epilog="Example: kswarms run fig-6.1a --densities 6,30 --seeds 3",
+)
+
+
+def main() -> None:
+    """Run the command line and exit with its status."""
+    sys.exit(invoke())
+
+
+def invoke(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        The words after ``kswarms``; by default those that this process was started with.
+
+    Returns
+    -------
+    int
+        Exit status: 0 done, 1 failed, 2 bad input, 130 interrupted.
+    """
+    try:
+        status: int | None = app(arguments, prog_name="kswarms", standalone_mode=False)
+    except InputError as error:
+        return _complain(str(error), 2)
+    except RunError as error:
+        traceback.print_exception(error.__cause__)  # a fault of the program, not of its input
+        return _complain(str(error), 1)
+    except OSError as error:
+        return _complain(str(error), 1)
+    except typer.TyperException as error:  # typer's own complaints: an unknown command or option, no number
+        return _complain(error.format_message(), error.exit_code)
+    if status == INTERRUPTED:
+        return _complain("interrupted", status)
+    return status or 0
+
+
+def _complain(message: str, status: int) -> int:
+    typer.echo(f"kswarms: {' '.join(message.split())}", err=True)
+    return status
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"kswarms {package_version()}")
+        raise typer.Exit
+
+
+@app.callback(invoke_without_command=True)
+def _without_command(
+    context: typer.Context,
+    _version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
+
+@app.command("list", epilog="Example: kswarms list")
+def list_scenarios() -> None:
+    """List the scenarios of the catalogue."""
+    width = max(map(len, CATALOGUE))
+    for scenario in CATALOGUE.values():
+        typer.echo(f"{scenario.id:<{width}}  {scenario.title}")
+
+
+@app.command(epilog="Example: kswarms show fig-6.1c")
+def show(scenario_id: Annotated[str, typer.Argument(metavar="ID", help="A scenario of the list.")]) -> None:
+    """Print a scenario as TOML."""
+    typer.echo(_scenario(scenario_id).to_toml(), nl=False)
+
+
+@app.command(epilog="Example: kswarms run fig-6.1a fig-6.1c --densities 6,30,50 --seeds 5")
+def run(
+    ids: Annotated[list[str] | None, typer.Argument(metavar="ID...", help="Scenarios of the list.")] = None,
+    everything: Annotated[
+        bool, typer.Option("--all", help="All scenarios, each with those --densities that suit it.")
+    ] = False,
+    densities: Annotated[
+        str | None, typer.Option(metavar="N,N,...", help="Robots in all. [default: the scenario's own]")
+    ] = None,
+    seeds: Annotated[
+        int | None, typer.Option(help="Games for each density. [default: the scenario's own]")
+    ] = None,
+    first_seed: Annotated[int, typer.Option(help="Seed of the first of these games.")] = 0,
+    jobs: Annotated[int | None, typer.Option(help="Processes that play. [default: one for each CPU]")] = None,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Where the results go.")] = Path("results"),
+    record: Annotated[
+        str, typer.Option(metavar="NAME,...", help=f"More tables to write: {', '.join(RECORDS)}.")
+    ] = "",
+    no_figures: Annotated[bool, typer.Option("--no-figures", help="Write the tables alone.")] = False,
+) -> None:
+    """Play scenarios, write tables of their results and draw a figure of each."""
+    scenarios = _plan(_choose(ids or [], everything), _integers("densities", densities), seeds, everything)
+    if first_seed < 0:
+        raise InputError("first_seed", first_seed, "must be at least 0")
+    jobs = jobs if jobs is not None else os.cpu_count() or 1
+    if jobs < 1:
+        raise InputError("jobs", jobs, "must be at least 1")
+    names = _words(record)
+    for name in names:
+        if name not in RECORDS:
+            raise InputError("record", name, f"must be among {', '.join(RECORDS)}")
+
+    for table in _play(expand(scenarios, first_seed), jobs, ",".join(names), out):
+        typer.echo(f"table:  {table}")
+    if not no_figures:
+        from analysis.figures import draw
+
+        titles = {scenario.id: scenario.title for scenario in scenarios}
+        for picture in draw(out, list(titles), titles):
+            typer.echo(f"figure: {picture}")
+    typer.echo(f"next:   {_next_command(scenarios, out)}")
+
+
+def _play(runs: Sequence[Run], jobs: int, record: str, out: Path) -> list[Path]:
+    from rich.console import Console
+    from rich.progress import track
+
+    from scenarios.tables import prepare, tabulate, write
+
+    prepare(out)
+    with closing(play_all(runs, jobs, record)) as played:
+        progress = track(played, "playing", total=len(runs), console=Console(stderr=True))
+        return write(out, [tabulate(run, outcome) for run, outcome in progress])
+
+
+def _scenario(scenario_id: str) -> Scenario:
+    if scenario_id not in CATALOGUE:
+        near = difflib.get_close_matches(scenario_id, CATALOGUE, cutoff=0.5)
+        hint = f"did you mean {' or '.join(near)}?" if near else "see `kswarms list`"
+        raise InputError("id", scenario_id, f"must be a scenario of the list; {hint}")
+    return CATALOGUE[scenario_id]
+
+
+def _choose(ids: Sequence[str], everything: bool) -> list[Scenario]:
+    if bool(ids) == everything:
+        raise InputError("id", " ".join(ids), "must be one or more of `kswarms list`, or none with --all")
+    return [_scenario(scenario_id) for scenario_id in dict.fromkeys(ids or CATALOGUE)]
+
+
+def _plan(
+    scenarios: Iterable[Scenario], densities: tuple[int, ...], seeds: int | None, suitable_only: bool
+) -> list[Scenario]:
+    """Return the scenarios with the densities and the number of seeds asked for in place of their own."""
+    planned, left_out = [], []
+    for scenario in scenarios:
+        wanted = tuple(n for n in densities if not suitable_only or scenario.allows(n))
+        if densities and not wanted:
+            left_out.append(scenario.id)
+            continue
+        asked = ({"densities": wanted} if wanted else {}) | ({"seeds": seeds} if seeds is not None else {})
+        try:
+            planned.append(scenario.replace(**asked))
+        except InputError as error:
+            raise InputError(error.field, error.value, f"{error.allowed} ({scenario.id})") from None
+    if not planned:
+        raise InputError("densities", ",".join(map(str, densities)), "must suit some scenario")
+    if left_out:
+        typer.echo(f"kswarms: none of the densities suits {', '.join(left_out)}: left out", err=True)
+    return planned
+
+
+def _words(text: str) -> list[str]:
+    return list(dict.fromkeys(word.strip() for word in text.split(","))) if text else []
+
+
+def _integers(field: str, text: str | None) -> tuple[int, ...]:
+    if text is None:
+        return ()
+    try:
+        return tuple(sorted({int(word) for word in text.split(",")}))
+    except ValueError:
+        raise InputError(field, text, "must be integers separated by commas, as 6,30,50") from None
+
+
+def _next_command(played: Sequence[Scenario], out: Path) -> str:
+    rest = [scenario_id for scenario_id in CATALOGUE if scenario_id not in {each.id for each in played}]
+    if not rest:
+        return f"kswarms show {played[0].id}  (what was played)"
+    return f"kswarms run {rest[0]} --out {shlex.quote(str(out))}  (`kswarms list` names all)"

@@ -1,0 +1,235 @@
+"""The command line: what it prints, what it writes, and how it refuses."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import pytest
+
+from scenarios import cli
+from scenarios.catalogue import CATALOGUE
+from scenarios.cli import invoke
+from scenarios.description import Scenario
+from scenarios.runner import RunError
+
+KSWARMS = [sys.executable, "-c", "from scenarios.cli import main; main()"]
+QUICK = ["--densities", "6", "--seeds", "1", "--jobs", "1", "--no-figures"]
+
+
+@pytest.fixture(autouse=True)
+def _in_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let relative paths lead into a directory of the test's own, which workers can leave for the package."""
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(path or str(Path.cwd()) for path in sys.path))
+    monkeypatch.chdir(tmp_path)
+
+
+def test_list_names_every_scenario(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(CATALOGUE)
+    assert all(scenario.title in line for scenario, line in zip(CATALOGUE.values(), lines, strict=True))
+
+
+def test_list_starts_fast_since_it_imports_nothing_heavy() -> None:
+    code = (
+        "import sys; from scenarios.cli import invoke; invoke(['list']); "
+        "heavy = {'mesa', 'numba', 'pandas', 'pyarrow', 'scipy', 'seaborn', 'simpy'}; "
+        "print(*sorted(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == ""
+
+
+def test_show_prints_the_scenario_as_toml(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["show", "fig-7.10"]) == 0
+    assert Scenario(**tomllib.loads(capsys.readouterr().out)) == CATALOGUE["fig-7.10"]
+
+
+def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["--version"]) == 0
+    assert capsys.readouterr().out.startswith("kswarms 0.")
+    for words in ([], ["list"], ["show"], ["run"]):
+        assert invoke([*words, "--help"]) == 0
+        assert f"Example: kswarms {' '.join(words)}" in capsys.readouterr().out
+    assert invoke([]) == 0
+    assert "Commands:" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        ("run", "id='': must be one or more of `kswarms list`, or none with --all"),
+        ("run fig-6.1a --all", "id='fig-6.1a': must be"),
+        ("run fig-6.1", "id='fig-6.1': must be a scenario of the list; did you mean "),
+        ("run fig-6.1a fgi-7.12", "id='fgi-7.12': must be a scenario of the list; did you mean fig-7.12"),
+        ("run zzz", "id='zzz': must be a scenario of the list; see `kswarms list`"),
+        ("show fig-9", "id='fig-9': must be"),
+        ("run fig-6.1a --densities 7", "n=7: must be a multiple of 2"),
+        ("run fig-6.1a --densities 6,0", "n=0: must be a multiple of 2"),
+        ("run fig-6.1a --densities -6", "n=-6: must be a multiple of 2"),
+        (
+            "run fig-6.1a fig-7.12 --densities 6",
+            "n=6: must be a multiple of 13 that gives each of 7:6 a robot",
+        ),
+        ("run fig-6.1a --densities 1000", "n=1000: "),
+        ("run fig-6.1a --densities 6,x", "densities='6,x': must be integers separated by commas"),
+        ("run fig-6.1a --densities 6.0", "densities='6.0': must be integers"),
+        ("run fig-6.1a --densities nan", "densities='nan': must be integers"),
+        ("run fig-6.1a --densities=", "densities='': must be integers"),
+        ("run --all --densities -1", "densities='-1': must suit some scenario"),
+        ("run fig-6.1a --seeds 0", "seeds=0: "),
+        ("run fig-6.1a --seeds -3", "seeds=-3: "),
+        ("run fig-6.1a --seeds 1.5", "Invalid value for '--seeds'"),
+        ("run fig-6.1a --first-seed -1", "first_seed=-1: must be at least 0"),
+        ("run fig-6.1a --jobs 0", "jobs=0: must be at least 1"),
+        ("run fig-6.1a --record films", "record='films': must be among conflicts, robots, trajectory"),
+        ("run fig-6.1a --record robots,", "record='': must be among"),
+        ("run fig-6.1a --record model", "record='model': must be among"),
+        ("run fig-6.1a --out taken", "out='taken': must be a writable directory"),
+        ("run fig-6.1a --out taken/below", "out='taken/below': must be a writable directory"),
+        ("run fig-6.1a --speed 3", "No such option"),
+        ("show", "Missing argument"),
+        ("play", "No such command"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line_and_nothing_is_written(
+    arguments: str, line: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("taken").write_text("a file")
+    assert invoke(arguments.split()) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err.startswith(f"kswarms: {line}")
+    assert printed.err.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["taken"]
+
+
+def test_a_run_writes_tables_and_tells_what_to_type_next(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["run", "fig-6.1c", *QUICK, "--out", "my results", "--record", "robots,conflicts"]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "table:  my results/runs.parquet",
+        "table:  my results/conflicts.parquet",
+        "table:  my results/robots.parquet",
+        "next:   kswarms run fig-6.1a --out 'my results'  (`kswarms list` names all)",
+    ]
+    rows = pq.read_table("my results/runs.parquet").to_pylist()
+    assert [(row["n"], row["seed"], row["policy"]) for row in rows] == [(6, 0, "avoid"), (6, 0, "attack")]
+    assert [row["ended"] for row in rows] == ["time", "time"]
+    assert rows[0]["sud"] == rows[0]["pucks"] - rows[1]["pucks"]
+    robots = pq.read_table("my results/robots.parquet").to_pylist()
+    assert [row["run"] for row in robots] == [rows[0]["run"]] * 6
+    for swarm in (1, 2):
+        mine = [row for row in robots if row["swarm"] == swarm]
+        assert sum(row["pucks"] for row in mine) == rows[swarm - 1]["pucks"]
+        lived = sum(row["t_a"] + row["t_p"] for row in mine)
+        assert lived == pytest.approx(3 * 600)
+    started = pq.read_table("my results/conflicts.parquet").num_rows
+    assert started == sum(row["conflicts_intra"] + row["conflicts_inter"] for row in rows)
+
+
+def test_every_record_has_the_columns_of_its_table() -> None:
+    assert invoke(["run", "fig-6.1c", *QUICK, "--record", "conflicts,robots,trajectory"]) == 0
+    trajectory = pq.read_table("results/trajectory.parquet").to_pydict()
+    assert sorted(set(trajectory["time"])) == [10.0 * k for k in range(61)]
+    assert set(trajectory["robot"]) == set(range(6))
+    assert set(trajectory["state"]) == {"A", "P"}
+
+
+def test_seeds_and_their_first_are_those_asked_for() -> None:
+    words = ["run", "fig-7.12", "--densities", "13", "--seeds", "2", "--first-seed", "7", "--no-figures"]
+    assert invoke([*words, "--jobs", "1"]) == 0
+    rows = pq.read_table("results/runs.parquet").to_pylist()
+    assert [(row["seed"], row["swarm"], row["size"]) for row in rows] == [
+        (7, 1, 7),
+        (7, 2, 6),
+        (8, 1, 7),
+        (8, 2, 6),
+    ]
+
+
+@pytest.mark.slow
+def test_jobs_and_order_and_portions_do_not_change_a_byte() -> None:
+    words = ["--densities", "6,10", "--seeds", "2", "--no-figures"]
+    assert invoke(["run", "fig-6.1c", "fig-7.10", *words, "--jobs", "1", "--out", "one"]) == 0
+    assert invoke(["run", "fig-7.10", "fig-6.1c", *words, "--jobs", "2", "--out", "two"]) == 0
+    for seed in ("1", "0"):
+        words[3] = "1"
+        assert invoke(["run", "fig-7.10", "fig-6.1c", *words, "--first-seed", seed, "--out", "three"]) == 0
+    one = Path("one/runs.parquet").read_bytes()
+    assert one == Path("two/runs.parquet").read_bytes() == Path("three/runs.parquet").read_bytes()
+
+
+@pytest.mark.slow
+def test_a_figure_is_drawn_of_each_scenario(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["run", "fig-6.1a", "fig-6.1b", *QUICK[:-1]]) == 0
+    pictures = [f"results/figures/fig-6.1{letter}.png" for letter in "ab"]
+    assert capsys.readouterr().out.splitlines() == [
+        "table:  results/runs.parquet",
+        *(f"figure: {picture}" for picture in pictures),
+        "next:   kswarms run fig-6.1c --out results  (`kswarms list` names all)",
+    ]
+    assert all(Path(picture).read_bytes().startswith(b"\x89PNG") for picture in pictures)
+
+
+def test_all_plays_what_the_densities_suit(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    played = []
+
+    def note(runs: list[cli.Run], *_rest: object) -> list[Path]:
+        played.extend((label[0], run.n) for run in runs for label in run.labels)
+        return []
+
+    monkeypatch.setattr(cli, "_play", note)
+    assert invoke(["run", "--all", "--densities", "6,13", "--seeds", "1", "--no-figures"]) == 0
+    sizes = {name: {n for played_name, n in played if played_name == name} for name in CATALOGUE}
+    exceptions = {"fig-6.15": {6, 13}, "fig-7.12": {13}, "fig-7.13a": {13}}
+    assert sizes == {name: exceptions.get(name, {6}) for name in CATALOGUE}
+    printed = capsys.readouterr()
+    assert printed.out == "next:   kswarms show fig-6.1a  (what was played)\n"
+    assert printed.err == ""
+    assert invoke(["run", "--all", "--densities", "6", "--seeds", "1", "--no-figures"]) == 0
+    left_out = "kswarms: none of the densities suits fig-7.12, fig-7.13a: left out\n"
+    assert capsys.readouterr().err == left_out
+
+
+def test_a_failing_run_and_a_full_disk_are_reported_and_nothing_is_written(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fail(error: Exception) -> None:
+        def play(*_rest: object) -> None:
+            raise error
+
+        monkeypatch.setattr(cli, "_play", play)
+
+    fail(RunError("run n=6 seed=0 failed: ZeroDivisionError: division by zero"))
+    assert invoke(["run", "fig-6.1a", *QUICK]) == 1
+    assert capsys.readouterr().err.splitlines()[-1].startswith("kswarms: run n=6 seed=0 failed")
+    fail(OSError(28, "No space left on device"))
+    assert invoke(["run", "fig-6.1a", *QUICK]) == 1
+    assert capsys.readouterr().err == "kswarms: [Errno 28] No space left on device\n"
+    assert list(Path().iterdir()) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_ctrl_c_ends_cleanly(jobs: str) -> None:
+    words = [*KSWARMS, "run", "fig-6.2", "--densities", "50", "--seeds", "40", "--jobs", jobs]
+    with subprocess.Popen(
+        words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+    ) as process:
+        while not Path("results").exists():  # made when the runs are about to start
+            time.sleep(0.05)
+        time.sleep(3.0)
+        os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers too
+        out, err = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert out == ""
+    assert err.splitlines()[-1] == "kswarms: interrupted"
+    assert "Traceback" not in err
+    assert list(Path("results").iterdir()) == []

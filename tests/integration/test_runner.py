@@ -1,0 +1,177 @@
+"""Runs played here and in worker processes: same outcomes, failures with names, nothing left behind."""
+
+import gc
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+import weakref
+from collections.abc import Iterable
+from contextlib import closing
+from multiprocessing import active_children
+from pathlib import Path
+
+import mesa
+import pytest
+
+from model.foraging import GameModel
+from scenarios import runner
+from scenarios.catalogue import CATALOGUE
+from scenarios.runner import RECORDS, Outcome, RunError, play, play_all
+from scenarios.runs import Run, expand
+
+
+def short(name: str, densities: tuple[int, ...] = (6, 10), seeds: int = 2) -> list[Run]:
+    """Return runs of a scenario with games of 20 s."""
+    scenario = CATALOGUE[name].replace(densities=densities, seeds=seeds)
+    conditions = tuple(condition.replace(duration=20.0) for condition in scenario.conditions)
+    return expand([scenario.replace(conditions=conditions)])
+
+
+def by_name(played: Iterable[tuple[Run, Outcome]]) -> dict[str, Outcome]:
+    return {run.digest: outcome for run, outcome in played}
+
+
+class Deadly(Run):
+    """A run that kills the process that receives it."""
+
+    effort = 1e9
+    n = 0
+
+    def __init__(self) -> None:
+        super().__init__("dead", None, 0, (("fig-0", ""),))
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return os._exit, (1,)
+
+
+@pytest.mark.slow
+def test_workers_and_order_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runner, "GAMES_A_WORKER", 3)  # so that workers are replaced on the way
+    runs = short("fig-6.1c") + short("fig-7.10") + short("fig-6.15", densities=(7,), seeds=1)
+    record = ",".join(RECORDS)
+    here = by_name(play_all(runs, 1, record))
+    shuffled = random.Random(3).sample(runs, len(runs))
+    there = by_name(play_all(shuffled, 2, record))
+    assert here.keys() == there.keys() == {run.digest for run in runs}
+    # As text: a reward that is not known is NaN, which equals nothing.
+    assert repr(sorted(here.items())) == repr(sorted(there.items()))
+    assert active_children() == []
+
+
+def test_other_seeds_give_other_outcomes() -> None:
+    first, second = short("fig-6.1c", densities=(10,))
+    assert play(first).swarms != play(second).swarms
+
+
+def test_the_longest_runs_come_first() -> None:
+    runs = short("fig-6.1a", densities=(6, 20, 10), seeds=1)
+    assert [run.n for run, _ in play_all(runs)] == [20, 10, 6]
+
+
+def test_an_outcome_has_a_row_for_each_swarm_and_the_records_asked_for() -> None:
+    (run,) = short("fig-7.10", densities=(6,), seeds=1)
+    outcome = play(run, "robots,conflicts")
+    assert [(row["swarm"], row["size"], row["policy"]) for row in outcome.swarms] == [
+        (1, 2, "avoid"),
+        (2, 3, "avoid"),
+        (3, 1, "aggressive"),
+    ]
+    assert set(outcome.records) == {"robots", "conflicts"}
+    assert play(run).records == {}
+
+
+def test_a_model_is_freed_after_its_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    models: list[weakref.ref[GameModel]] = []
+    real = GameModel.play
+
+    def watched(self: GameModel) -> None:
+        models.append(weakref.ref(self))
+        real(self)
+
+    monkeypatch.setattr(GameModel, "play", watched)
+    kept_by_mesa = len(mesa.Agent._ids)
+    for run in short("fig-6.1a", densities=(6,), seeds=2):
+        play(run)
+    assert len(mesa.Agent._ids) == kept_by_mesa
+    gc.collect()
+    assert [model() for model in models] == [None, None]
+
+
+@pytest.mark.parametrize("jobs", [1, pytest.param(2, marks=pytest.mark.slow)])
+def test_a_failing_run_is_named(jobs: int) -> None:
+    good = short("fig-6.15", densities=(6,), seeds=1)
+    bad = [Run("bad", run.game, -1, run.labels) for run in good if run.labels[0][1] == "fight-1000ms"]
+    with pytest.raises(RunError) as failure:
+        list(play_all(bad + good, jobs))
+    named = "run scenario='fig-6.15' condition='fight-1000ms' n=6 seed=-1 failed: "
+    assert str(failure.value).startswith(named + "InputError: seed=-1")
+    assert active_children() == []
+
+
+@pytest.mark.slow
+def test_a_worker_that_dies_is_reported() -> None:
+    with pytest.raises(RunError, match="a worker process died"):
+        list(play_all([Deadly(), *short("fig-6.1a")], 2))
+    assert active_children() == []
+
+
+@pytest.mark.slow
+def test_ctrl_c_is_left_to_the_parent() -> None:
+    mask_before = signal.pthread_sigmask(signal.SIG_BLOCK, [])
+    with closing(play_all(short("fig-6.1a", seeds=8), 2)) as played:
+        next(played)
+        workers = active_children()
+        assert len(workers) == 2
+        for worker in workers:
+            status = Path(f"/proc/{worker.pid}/status").read_text()
+            blocked = int(status.partition("SigBlk:")[2].split()[0], 16)
+            assert blocked >> (signal.SIGINT - 1) & 1
+    assert signal.pthread_sigmask(signal.SIG_BLOCK, []) == mask_before
+
+
+@pytest.mark.slow
+def test_whoever_stops_listening_stops_the_workers() -> None:
+    (quick,) = short("fig-6.1a", densities=(6,), seeds=1)
+    endless = Run("endless", quick.game.replace(duration=1e6), 0, quick.labels)
+    played = play_all([quick, endless], 2)
+    assert next(played)[0] == quick
+    started = time.monotonic()
+    played.close()
+    assert active_children() == []
+    assert time.monotonic() - started < 5
+
+
+@pytest.mark.slow
+def test_workers_end_with_their_parent_even_if_it_is_killed(tmp_path: Path) -> None:
+    script = tmp_path / "parent.py"
+    script.write_text(
+        "from multiprocessing import active_children\n"
+        "from scenarios.catalogue import CATALOGUE\n"
+        "from scenarios.runner import play_all\n"
+        "from scenarios.runs import expand\n"
+        "if __name__ == '__main__':\n"
+        "    runs = expand([CATALOGUE['fig-6.2'].replace(densities=(50,), seeds=50)])\n"
+        "    for _ in play_all(runs, 2):\n"
+        "        print(*(child.pid for child in active_children()), flush=True)\n"
+    )
+    with subprocess.Popen([sys.executable, script], stdout=subprocess.PIPE, text=True) as parent:
+        assert parent.stdout is not None
+        workers = [int(word) for word in parent.stdout.readline().split()]
+        assert workers
+        parent.kill()
+    deadline = time.monotonic() + 10
+    while any(alive(worker) for worker in workers):
+        assert time.monotonic() < deadline, "workers outlive their parent"
+        time.sleep(0.05)
+
+
+def alive(process: int) -> bool:
+    """Tell whether a process runs; one that has ended and waits to be collected does not."""
+    try:
+        os.kill(process, 0)
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except (ProcessLookupError, FileNotFoundError):
+        return False

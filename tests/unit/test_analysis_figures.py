@@ -1,0 +1,291 @@
+"""What the first figures show, and how they are written."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection, PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from agents.errors import InputError
+from analysis.figures import draw, pucks_over_n, sud_over_n, time_shares
+
+DENSITIES = (6, 16, 26)
+PNG = b"\x89PNG\r\n\x1a\n"
+
+
+def runs_of(
+    scenario: str,
+    swarms: Iterable[int] = (1, 2),
+    conditions: Iterable[str] = ("",),
+    densities: Iterable[int] = DENSITIES,
+    seeds: int = 4,
+) -> pd.DataFrame:
+    """Make runs whose swarm k deposits 10 k + n + 100 (index of the condition) pucks, ± 1 by the seed."""
+    return pd.DataFrame(
+        {
+            "run": f"{condition}-{n}-{seed}",
+            "scenario": scenario,
+            "condition": condition,
+            "n": n,
+            "seed": seed,
+            "swarm": swarm,
+            "size": n // 2,
+            "policy": ("avoid", "attack", "aggressive")[swarm - 1],
+            "pucks": 100 * index + 10 * swarm + n + (-1) ** seed,
+            "sud": 100 * index - 10 * swarm + n,
+            "t_a_intra": 10.0 * swarm,
+            "t_a_inter": 20.0 * swarm,
+            "t_p": 400.0 - 30.0 * swarm,
+            "conflicts_intra": 5,
+            "conflicts_inter": 6,
+            "duration": 600.0,
+            "ended": "time",
+        }
+        for index, condition in enumerate(conditions)
+        for n in densities
+        for seed in range(seeds)
+        for swarm in swarms
+    )
+
+
+def curves(axes: Axes) -> dict[str, Line2D]:
+    """Find the curves by the names that the legend gives them."""
+    handles, labels = axes.get_legend_handles_labels()
+    return dict(zip(labels, handles, strict=True))
+
+
+def heights(line: Line2D) -> list[float]:
+    return [float(value) for value in np.asarray(line.get_ydata())]
+
+
+def points(axes: Axes) -> list[np.ndarray]:
+    """Find the single seeds (n, value) of each curve."""
+    return [
+        np.asarray(drawn.get_offsets()) for drawn in axes.collections if isinstance(drawn, PathCollection)
+    ]
+
+
+def legend(figure: Figure) -> list[str]:
+    (drawn,) = figure.legends
+    return [text.get_text() for text in drawn.get_texts()]
+
+
+def test_swarms_have_the_form_of_the_source() -> None:
+    (axes,) = pucks_over_n(runs_of("fig-x", swarms=(1, 2, 3)), "fig-x").axes
+    forms = {
+        label: (line.get_color(), line.get_linestyle(), line.get_marker(), line.get_markerfacecolor())
+        for label, line in curves(axes).items()
+    }
+    assert forms == {
+        "S1: avoid": ("green", "--", "o", "white"),
+        "S2: attack": ("red", "--", "o", "red"),
+        "S3: aggressive": ("blue", "-.", "^", "blue"),
+    }
+
+
+def test_curve_is_the_mean_over_the_seeds_of_its_own_scenario() -> None:
+    runs = pd.concat([runs_of("fig-x"), runs_of("fig-y").assign(pucks=0)])
+    (axes,) = pucks_over_n(runs, "fig-x").axes
+    assert heights(curves(axes)["S1: avoid"]) == [16, 26, 36]
+    assert heights(curves(axes)["S2: attack"]) == [26, 36, 46]
+
+
+def test_every_seed_is_a_point_beside_its_density() -> None:
+    (axes,) = pucks_over_n(runs_of("fig-x"), "fig-x").axes
+    of_s1, of_s2 = points(axes)
+    assert sorted(of_s1[:, 1]) == sorted([15, 17] * 2 + [25, 27] * 2 + [35, 37] * 2)
+    assert len(of_s2) == 4 * len(DENSITIES)
+    assert set(of_s1[:, 0]).isdisjoint(of_s2[:, 0])
+    assert np.abs(of_s1[:, 0] - np.repeat(DENSITIES, 4)).max() <= 1
+    assert np.abs(of_s2[:, 0] - np.repeat(DENSITIES, 4)).max() <= 1
+
+
+def test_band_is_an_interval_of_the_mean_whatever_the_order_of_rows() -> None:
+    runs = runs_of("fig-x", seeds=8)
+    runs["pucks"] += np.random.default_rng(3).integers(0, 9, len(runs))
+    bands = []
+    for shuffled in (runs, runs.sample(frac=1, random_state=1)):
+        (axes,) = pucks_over_n(shuffled.sort_values("swarm", kind="stable"), "fig-x").axes
+        band = next(drawn for drawn in axes.collections if isinstance(drawn, PolyCollection))
+        bands.append(np.asarray(band.get_paths()[0].vertices))
+    assert np.array_equal(bands[0], bands[1])
+    at_6 = runs[(runs["n"] == 6) & (runs["swarm"] == 1)]["pucks"]
+    edges = bands[0][bands[0][:, 0] == 6][:, 1]
+    assert at_6.min() < edges.min() < at_6.mean() < edges.max() < at_6.max()
+
+
+def test_conditions_of_one_swarm_are_a_curve_each() -> None:
+    runs = runs_of("fig-6.15", swarms=(1,), conditions=("flight 50 ms", "fight"))
+    figure = pucks_over_n(runs, "fig-6.15")
+    (axes,) = figure.axes
+    assert legend(figure) == ["flight 50 ms", "fight"]
+    assert heights(curves(axes)["fight"]) == [116, 126, 136]
+    assert len({line.get_color() for line in curves(axes).values()}) == 2
+
+
+def test_conditions_of_several_swarms_keep_the_swarms_markers() -> None:
+    figure = pucks_over_n(runs_of("fig-x", conditions=("", "delta=0.1")), "fig-x")
+    (axes,) = figure.axes
+    assert legend(figure) == [
+        "–, S1: avoid",
+        "–, S2: attack",
+        "delta=0.1, S1: avoid",
+        "delta=0.1, S2: attack",
+    ]
+    open_marker, filled = curves(axes)["delta=0.1, S1: avoid"], curves(axes)["delta=0.1, S2: attack"]
+    assert open_marker.get_markerfacecolor() == "white"
+    assert filled.get_markerfacecolor() == filled.get_color() == open_marker.get_color()
+
+
+def test_labels_title_and_seeds() -> None:
+    runs = runs_of("fig-x")
+    figure = pucks_over_n(
+        runs, "fig-x", "a title of words that is far too long for one line of the figure " * 2
+    )
+    (axes,) = figure.axes
+    assert axes.get_xlabel() == "number of robots in all, N"
+    assert axes.get_ylabel() == "pucks deposited by the swarm"
+    assert figure.get_suptitle().startswith("fig-x: a title")
+    assert max(map(len, figure.get_suptitle().splitlines())) <= 75
+    assert figure.legends[0].get_title().get_text().startswith("mean of 4 seeds")
+    assert list(axes.get_xticks()) == [6, 16, 26]
+    fewer = runs[(runs["n"] != 6) | (runs["seed"] == 0)]
+    assert pucks_over_n(fewer, "fig-x").legends[0].get_title().get_text().startswith("mean of 1 to 4 seeds")
+    assert pucks_over_n(runs, "fig-x").get_suptitle() == "fig-x"
+
+
+def test_one_seed_at_one_density_without_pucks() -> None:
+    runs = runs_of("fig-x", densities=[20], seeds=1).assign(pucks=0)
+    figure = pucks_over_n(runs, "fig-x")
+    (axes,) = figure.axes
+    assert figure.legends[0].get_title().get_text() == "one seed"
+    assert points(axes) == []
+    assert axes.get_xlim()[0] < 20 < axes.get_xlim()[1]
+    assert axes.get_ylim()[0] < 0 < axes.get_ylim()[1]
+
+
+def test_many_densities_get_the_ticks_of_matplotlib() -> None:
+    (axes,) = pucks_over_n(runs_of("fig-x", densities=range(2, 82, 2), seeds=2), "fig-x").axes
+    assert len(axes.get_xticks()) < 20
+
+
+def test_time_shares_in_all_and_by_kind_of_conflict() -> None:
+    figure = time_shares(runs_of("fig-6.3"), "fig-6.3")
+    shown = {
+        axes.get_title(): {label: heights(line) for label, line in curves(axes).items()}
+        for axes in figure.axes
+    }
+    assert list(shown) == ["total", "inter-swarm", "intra-swarm"]
+    expected = {
+        "total": (30 / 400, 60 / 400),
+        "inter-swarm": (20 / 400, 40 / 400),
+        "intra-swarm": (10 / 400, 20 / 400),
+    }
+    for kind, (first, second) in expected.items():
+        assert shown[kind]["S1: avoid"] == pytest.approx([first] * 3)
+        assert shown[kind]["S2: attack"] == pytest.approx([second] * 3)
+    assert figure.axes[0].get_ylabel() == "share of time, T(a) / (T(a) + T(p))"
+    assert legend(figure) == ["S1: avoid", "S2: attack"]
+
+
+def test_sud_of_the_second_swarm_by_condition() -> None:
+    runs = runs_of("fig-7.10", swarms=(1, 2, 3), conditions=("avoid", "delta=0.1"))
+    figure = sud_over_n(runs, "fig-7.10")
+    (axes,) = figure.axes
+    assert legend(figure) == ["avoid", "delta=0.1"]
+    assert heights(curves(axes)["avoid"]) == [-14, -4, 6]
+    assert axes.get_ylabel() == "SUD of S2 (pucks)"
+    (of_s3,) = sud_over_n(runs, "fig-7.10", swarm=3).axes
+    assert heights(curves(of_s3)["avoid"]) == [-24, -14, -4]
+
+
+@pytest.mark.parametrize("show", [pucks_over_n, time_shares, sud_over_n])
+def test_scenario_without_runs(show: type) -> None:
+    with pytest.raises(InputError, match=r"scenario='fig-6\.9': must be one of fig-x, fig-y"):
+        show(pd.concat([runs_of("fig-y"), runs_of("fig-x")]), "fig-6.9")
+
+
+def test_swarm_that_the_scenario_does_not_have() -> None:
+    with pytest.raises(InputError, match=r"swarm=2: must be one of 1 in fig-6\.15"):
+        sud_over_n(runs_of("fig-6.15", swarms=(1,)), "fig-6.15")
+
+
+def test_draw_writes_each_scenario_that_has_runs(tmp_path: Path) -> None:
+    runs = pd.concat([runs_of("fig-6.1a"), runs_of("fig-6.3"), runs_of("fig-7.10"), runs_of("fig-7.12")])
+    runs.to_parquet(tmp_path / "runs.parquet")
+    paths = draw(tmp_path, ["fig-7.10", "fig-6.3", "fig-7.1", "fig-6.1a"], {"fig-6.1a": "avoid and avoid"})
+    assert paths == [tmp_path / "figures" / f"{name}.png" for name in ("fig-7.10", "fig-6.3", "fig-6.1a")]
+    assert set(paths) == set((tmp_path / "figures").iterdir())
+    assert all(path.read_bytes().startswith(PNG) for path in paths)
+
+
+@pytest.mark.parametrize(
+    ("scenario", "label"),
+    [
+        ("fig-6.2", "pucks deposited by the swarm"),
+        ("fig-6.3", "share of time"),
+        ("fig-7.10", "SUD of S2 (pucks)"),
+    ],
+)
+def test_draw_shows_what_the_scenario_is_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scenario: str, label: str
+) -> None:
+    runs_of(scenario).to_parquet(tmp_path / "runs.parquet")
+    written: list[Figure] = []
+    monkeypatch.setattr("analysis.figures._write", lambda figure, path: written.append(figure))
+    draw(tmp_path, [scenario], {scenario: "its title"})
+    (figure,) = written
+    assert figure.axes[0].get_ylabel().startswith(label)
+    assert figure.get_suptitle() == f"{scenario}: its title"
+
+
+def test_same_runs_same_picture(tmp_path: Path) -> None:
+    runs_of("fig-x", seeds=8).to_parquet(tmp_path / "runs.parquet")
+    (path,) = draw(tmp_path, ["fig-x"], {})
+    first = path.read_bytes()
+    draw(tmp_path, ["fig-x"], {})
+    assert path.read_bytes() == first
+    runs_of("fig-x", seeds=9).to_parquet(tmp_path / "runs.parquet")
+    draw(tmp_path, ["fig-x"], {})
+    assert path.read_bytes() != first
+
+
+def test_interrupted_writing_leaves_the_old_picture_and_nothing_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    runs_of("fig-x").to_parquet(tmp_path / "runs.parquet")
+    (path,) = draw(tmp_path, ["fig-x"], {})
+    first = path.read_bytes()
+
+    def full_disk(part: Path, picture: bytes) -> None:
+        with part.open("wb") as file:
+            file.write(picture[:100])
+        raise OSError("No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", full_disk)
+    with pytest.raises(InputError, match="must be a place that can be written"):
+        draw(tmp_path, ["fig-x"], {"fig-x": "another title"})
+    assert path.read_bytes() == first
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_figures_that_cannot_be_written(tmp_path: Path) -> None:
+    runs_of("fig-x").to_parquet(tmp_path / "runs.parquet")
+    (tmp_path / "figures").write_text("in the way")
+    with pytest.raises(InputError, match="must be a place that can be written"):
+        draw(tmp_path, ["fig-x"], {})
+
+
+def test_nothing_global_changes(tmp_path: Path) -> None:
+    runs_of("fig-6.3").to_parquet(tmp_path / "runs.parquet")
+    before = dict(mpl.rcParams)
+    draw(tmp_path, ["fig-6.3"], {})
+    assert dict(mpl.rcParams) == before
+    assert plt.get_fignums() == []
