@@ -26,6 +26,11 @@ _MOMENTUM: Final = 0.8
 _PASSES: Final = 200
 """Passes of the relaxation before it looks again at which pairs are close."""
 _ROUNDS: Final = 50
+_FORGET_AFTER: Final = 4
+_FORGET_EVERY: Final = 8
+"""Passes after which the relaxation forgets pairs that have come to rest: most jams end long before the worst."""
+_AT_REST: Final = 1e-12
+"""Square of a move that is too short to go on with (m²)."""
 
 
 @compiled
@@ -200,7 +205,7 @@ def relax(positions: Floats, radius: float, half: float, work: Records, pairs: R
         Passes that were needed.
     """
     move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
-    count, limit = work["count"], half - radius
+    count, queued, limit = work["count"], work["queued"], half - radius
     for i in range(len(positions)):
         positions[i, 0] = min(limit, max(-limit, positions[i, 0]))
         positions[i, 1] = min(limit, max(-limit, positions[i, 1]))
@@ -209,17 +214,22 @@ def relax(positions: Floats, radius: float, half: float, work: Records, pairs: R
         shove_x[i] = 0.0
         shove_y[i] = 0.0
         count[i] = 0
+        queued[i] = 0
     done = 0
     for _ in range(_ROUNDS):
         n_close, worst = _find_close(positions, radius, pairs, n_pairs)
         if worst <= TOLERANCE:
             break
+        n_queued = 0
         for _ in range(_PASSES):
-            worst = _measure_overlaps(positions, radius, work, pairs, n_close)
-            _part(positions, limit, work, 0.0 if done < _PLAIN_PASSES else _MOMENTUM)
+            if done % _FORGET_EVERY == _FORGET_AFTER:
+                n_close = _forget_resting(positions, radius, work, pairs, n_close)
+            worst, n_queued = _measure_overlaps(positions, radius, work, pairs, n_close, n_queued)
+            n_queued = _part(positions, limit, work, n_queued, 0.0 if done < _PLAIN_PASSES else _MOMENTUM)
             if worst <= TOLERANCE:
                 break
             done += 1
+        _stop(work, n_queued)
     return done
 
 
@@ -242,10 +252,32 @@ def _find_close(positions: Floats, radius: float, pairs: Records, n_pairs: int) 
 
 
 @compiled
-def _measure_overlaps(positions: Floats, radius: float, work: Records, pairs: Records, n_close: int) -> float:
-    """Add up, for each body, half of each of its overlaps; return the greatest overlap (m)."""
+def _forget_resting(positions: Floats, radius: float, work: Records, pairs: Records, n_close: int) -> int:
+    """Keep of the close pairs those that overlap or of which a body moves; return their number."""
+    first, second, close, queued = pairs["first"], pairs["second"], pairs["close"], work["queued"]
+    kept = 0
+    for c in range(n_close):
+        i = first[close[c]]
+        j = second[close[c]]
+        dx = positions[j, 0] - positions[i, 0]
+        dy = positions[j, 1] - positions[i, 1]
+        if queued[i] or queued[j] or dx * dx + dy * dy < 4.0 * radius * radius:
+            close[kept] = close[c]
+            kept += 1
+    return kept
+
+
+@compiled
+def _measure_overlaps(
+    positions: Floats, radius: float, work: Records, pairs: Records, n_close: int, n_queued: int
+) -> tuple[float, int]:
+    """Add up, for each body, half of each of its overlaps, and queue it.
+
+    Returns the greatest overlap (m) and how many bodies are queued.
+    """
     first, second, close = pairs["first"], pairs["second"], pairs["close"]
     shove_x, shove_y, count = work["shove_x"], work["shove_y"], work["count"]
+    queued, queue = work["queued"], work["queue"]
     near = 2.0 * radius
     worst = 0.0
     for c in range(n_close):
@@ -266,23 +298,27 @@ def _measure_overlaps(positions: Floats, radius: float, work: Records, pairs: Re
         shove_y[i] -= part * dy
         shove_x[j] += part * dx
         shove_y[j] += part * dy
-        count[i] += 1
-        count[j] += 1
-    return worst
+        for robot in (i, j):
+            count[robot] += 1
+            if not queued[robot]:
+                queued[robot] = 1
+                queue[n_queued] = robot
+                n_queued += 1
+    return worst, n_queued
 
 
 @compiled
-def _part(positions: Floats, limit: float, work: Records, momentum: float) -> None:
-    """Move the bodies apart as measured, not beyond the walls, and forget the measures.
+def _part(positions: Floats, limit: float, work: Records, n_queued: int, momentum: float) -> int:
+    """Move the queued bodies apart as measured, not beyond the walls, and forget the measures.
 
     A jam needs many passes, each of which carries a correction one body farther: a part of the last
-    pass's move is added, which makes it about five times fewer.
+    pass's move is added, which makes it about five times fewer. Returns how many bodies stay queued.
     """
     move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
-    count = work["count"]
-    for i in range(len(positions)):
-        if count[i] == 0 and move_x[i] == 0.0 and move_y[i] == 0.0:
-            continue
+    count, queued, queue = work["count"], work["queued"], work["queue"]
+    kept = 0
+    for q in range(n_queued):
+        i = queue[q]
         # Three and more corrections at once would overshoot: twice their mean does not.
         scale = 1.0 if count[i] <= 2 else 2.0 / count[i]
         move_x[i] = momentum * move_x[i] + scale * shove_x[i]
@@ -292,3 +328,21 @@ def _part(positions: Floats, limit: float, work: Records, momentum: float) -> No
         shove_x[i] = 0.0
         shove_y[i] = 0.0
         count[i] = 0
+        if move_x[i] * move_x[i] + move_y[i] * move_y[i] > _AT_REST:
+            queue[kept] = i
+            kept += 1
+        else:
+            move_x[i] = 0.0
+            move_y[i] = 0.0
+            queued[i] = 0
+    return kept
+
+
+@compiled
+def _stop(work: Records, n_queued: int) -> None:
+    """Let the queued bodies rest, so that the next round begins without their momentum."""
+    for q in range(n_queued):
+        i = work["queue"][q]
+        work["move_x"][i] = 0.0
+        work["move_y"][i] = 0.0
+        work["queued"][i] = 0

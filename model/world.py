@@ -51,7 +51,9 @@ WORK: Final = np.dtype(
         ("move_y", np.float64),
         ("shove_x", np.float64),  # what others add to it; in the relaxation, one pass's correction (m)
         ("shove_y", np.float64),
-        ("count", np.int64),  # contacts
+        ("count", np.int64),  # contacts; in the relaxation, overlaps
+        ("queued", np.int64),  # whether the relaxation moves it
+        ("queue", np.int64),  # in row k, the k-th robot that the relaxation moves
         ("origin_x", np.float64),  # position for which the neighbours were listed (m)
         ("origin_y", np.float64),
         ("cell_robots", np.int64),  # robots ordered by cell
