@@ -22,6 +22,8 @@ from agents.policies import Policy
 from agents.sensors import SECTOR, heads_for, walls_met, wrap
 from agents.streams import Purpose, stream
 
+_STRAIGHT: Final = 1e-9
+"""A turn by less than this angle is none (rad)."""
 _VACANT_ANGLES: Final = [
     tuple(wrap(sensor * SECTOR) for sensor in range(SENSORS) if vacant >> sensor & 1)
     for vacant in range(2**SENSORS)
@@ -100,6 +102,7 @@ class Krembot(ContinuousSpaceAgent):
         self._stride = model.fleet.stride
         self._turn_rate = model.fleet.turn_rate
         self._habits = model.habits
+        self._turn_step = model.habits.turn_step
         self._action_periods = model.action_periods
         self._log = model.conflict_log
         self._stride_program = stride_program
@@ -223,7 +226,7 @@ class Krembot(ContinuousSpaceAgent):
             self._open = (index, other, now, x, y, action, active)
         if action.direction != TOWARDS:
             angle = self._vacant_direction(vacant)
-        if angle != 0.0:
+        if abs(angle) > _STRAIGHT:
             self._turn(ACTION, angle, self._drive_action)
         else:
             self._timer = None
@@ -281,7 +284,7 @@ class Krembot(ContinuousSpaceAgent):
     def _turn(self, phase: int, angle: float, then: Callable[[Any], None]) -> None:
         """Turn in place, in whole periods, and call `then`."""
         index = self.index
-        periods = max(1, math.ceil(abs(angle) / self._habits.turn_step - 1e-9))
+        periods = max(1, math.ceil(abs(angle) / self._turn_step - _STRAIGHT))
         self._phase[index] = phase
         self._stride[index] = 0.0
         self._turn_rate[index] = angle / periods

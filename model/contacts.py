@@ -68,7 +68,7 @@ def translate(
         shove_x[i] = 0.0
         shove_y[i] = 0.0
         count[i] = 0
-    _meet_bodies(positions, radius, fastest, push_share, work, contacts, pairs, n_pairs)
+    _meet_bodies(positions, stride, radius, fastest, push_share, work, contacts, pairs, n_pairs)
     _meet_walls(positions, radius, half, work, contacts)
     crowded = False
     for i in range(n):
@@ -84,6 +84,7 @@ def translate(
 @compiled
 def _meet_bodies(
     positions: Floats,
+    stride: Floats,
     radius: float,
     fastest: float,
     push_share: float,
@@ -99,6 +100,8 @@ def _meet_bodies(
     for k in range(n_pairs):
         i = first[k]
         j = second[k]
+        if stride[i] == 0.0 and stride[j] == 0.0:
+            continue
         dx = positions[j, 0] - positions[i, 0]
         dy = positions[j, 1] - positions[i, 1]
         squared = dx * dx + dy * dy

@@ -7,8 +7,8 @@ everything else at their instant: they see the world as the last period left it.
 """
 
 import math
-from collections.abc import Generator, Mapping
-from typing import Any, Final, cast
+from collections.abc import Callable, Mapping
+from typing import Any, Final, NoReturn, cast
 
 import mesa
 import numpy as np
@@ -35,14 +35,29 @@ _AFTER_TIMEOUTS: Final = 2
 
 
 class Instant(Event):
-    """An event that just happens, at a given priority among the events of its instant."""
+    """An event that only happens, at a given priority among the events of its instant, and may do so again.
 
-    def __init__(self, env: simpy.Environment, delay: int, priority: int) -> None:
-        self.env = env
-        self.callbacks = []
+    Parameters
+    ----------
+    env : simpy.Environment
+        The clock.
+    priority : int
+        0 comes before timeouts, 2 after them.
+    callback : callable
+        What is called with the event.
+    """
+
+    def __init__(self, env: simpy.Environment, priority: int, callback: Callable[[Event], None]) -> None:
+        super().__init__(env)
         self._ok = True
         self._value = None
-        env.schedule(self, priority, delay)  # type: ignore[arg-type]  # SimPy only names two of the priorities
+        self._priority = priority
+        self._callback = callback
+
+    def happen_in(self, delay: int) -> None:
+        """Schedule it, `delay` periods from now; it must have happened if it was scheduled before."""
+        self.callbacks = [self._callback]
+        self.env.schedule(self, self._priority, delay)  # type: ignore[arg-type]  # SimPy names only two of them
 
 
 class GameModel(mesa.Model):
@@ -108,10 +123,13 @@ class GameModel(mesa.Model):
         self._populate()
         self._swarm_of: list[int] = self.fleet.swarm.tolist()
         self._kernel = Kernel(game, self.arena, self.fleet)
+        self._due = 0
+        """Events of the kernel that the robots have not decided on yet."""
         self._end = self.habits.periods(game.duration)
-        Instant(self.env, self._end, _BEFORE_TIMEOUTS).callbacks.append(self._time_is_up)
+        Instant(self.env, _BEFORE_TIMEOUTS, self._time_is_up).happen_in(self._end)
+        self._motion = Instant(self.env, _AFTER_TIMEOUTS, self._move)
+        self._motion.happen_in(0)
         self._sample_every = self.habits.periods(sample_period)
-        self.env.process(self._motion())
         self._recorded = recorded
         self.sample_times: list[float] = []
         self.datacollector = recording.make_collector(len(game.swarms), recorded)
@@ -200,14 +218,14 @@ class GameModel(mesa.Model):
         self.fleet.positions[:] = positions
 
     def _time_is_up(self, _: Event) -> None:
-        if not self.ended:
-            self._finish("time" if self.game.puck_limit is None else "cap")
-            raise StopSimulation(None)
+        self._finish("time" if self.game.puck_limit is None else "cap")
 
-    def _finish(self, why: str) -> None:
+    def _finish(self, why: str) -> NoReturn:
+        """End the game, and with it the run of the clock."""
         self.ended = why
         for robot in self.robots:
-            robot.close(int(self.env.now))
+            robot.close(cast(int, self.env.now))
+        raise StopSimulation(None)
 
     def _collect(self) -> None:
         if self.conflict_log:
@@ -216,22 +234,17 @@ class GameModel(mesa.Model):
         self.sample_times.append(self.time)
         self.datacollector.collect(self)
 
-    def _motion(self) -> Generator[Event, None, None]:
-        """Move the bodies from decision to decision, and have the robots decide."""
-        env, advance = self.env, self._kernel.advance
-        yield Instant(env, 0, _AFTER_TIMEOUTS)
+    def _move(self, _: Event) -> None:
+        """Have the robots decide, and move the bodies to the next decision or event; then wait for that instant."""
+        env, kernel = self.env, self._kernel
+        now = cast(int, env.now)
         while True:
-            now = int(env.now)
-            tick, size = advance(now, cast(int, env.peek()))
-            if tick > now or size == 0:
-                yield Instant(env, tick - now, _AFTER_TIMEOUTS)
-            if size > 0:
-                self._decide(tick, size)
-                if self.ended:
-                    stop = env.event()
-                    stop.callbacks.append(StopSimulation.callback)
-                    stop.succeed()
-                    return
+            if self._due > 0:
+                self._decide(now, self._due)
+            tick, self._due = kernel.advance(now, cast(int, env.peek()))
+            if tick > now or self._due == 0:
+                break
+        self._motion.happen_in(tick - now)
 
     def _decide(self, now: int, size: int) -> None:
         """Hand the first `size` events of the kernel to their robots, in the order of their numbers."""
@@ -254,7 +267,6 @@ class GameModel(mesa.Model):
                 self.pucks[robot.swarm] += 1
                 if self.game.puck_limit is not None and sum(self.pucks) >= self.game.puck_limit:
                     self._finish("pucks")
-                    return
             else:
                 robot.begin_wall_turn()
         if pick_ups:

@@ -103,10 +103,14 @@ def find_pucks(
 def _look_ahead(
     positions: Floats, robots: Records, world: Records, work: Records, pairs: Records, n_pairs: int
 ) -> None:
-    """Find the nearest robot ahead of each robot within the conflict distance, −1 if there is none."""
+    """Find the nearest robot ahead of each robot within the conflict distance, −1 if there is none.
+
+    Pairs of robots that both resolve a conflict are passed over unless such a robot may meet another.
+    """
     forward_x, forward_y = robots["forward_x"], robots["forward_y"]
     nearest, squares = work["nearest"], work["squared"]
-    first, second = pairs["first"], pairs["second"]
+    first, second, phase = pairs["first"], pairs["second"], robots["phase"]
+    preempt = world["preempt"][0]
     limit, front_cosine = world["conflict_reach"][0] ** 2, world["front_cosine"][0]
     for i in range(len(positions)):
         nearest[i] = -1
@@ -114,6 +118,8 @@ def _look_ahead(
     for k in range(n_pairs):
         i = first[k]
         j = second[k]
+        if phase[i] == ACTION and phase[j] == ACTION and not preempt:
+            continue
         dx = positions[j, 0] - positions[i, 0]
         dy = positions[j, 1] - positions[i, 1]
         squared = dx * dx + dy * dy
@@ -164,7 +170,9 @@ def perceive(
     """
     radius, half, preempt = world["radius"][0], world["half"][0], world["preempt"][0]
     wall_reach, wall_half_angle = world["wall_reach"][0], world["wall_half_angle"][0]
+    flight_range, active_range = world["flight_range"][0], world["active_range"][0]
     base_reach = world["base_range"][0] ** 2
+    forward_x, forward_y = robots["forward_x"], robots["forward_y"]
     heading, phase, swarm = robots["heading"], robots["phase"], robots["swarm"]
     opponent, carrying = robots["opponent"], robots["carrying"]
     nearest, cell_robots, found = work["nearest"], work["cell_robots"], work["found"]
@@ -179,8 +187,9 @@ def perceive(
         event = events[size]
         if other >= 0 and (doing != ACTION or (preempt and other != opponent[i])):
             n_found = within(x, y, world["ring_reach"][0], half, cell_start, cell_robots, found)
-            sense(i, heading[i], positions, found, n_found, radius, half, free)
-            active, vacant = _read_ring(free, world["flight_range"][0], world["active_range"][0])
+            farthest = max(flight_range, active_range)
+            sense(i, forward_x[i], forward_y[i], positions, found, n_found, radius, half, farthest, free)
+            active, vacant = _read_ring(free, flight_range, active_range)
             event["robot"] = i
             event["kind"] = CONFLICT
             event["other"] = other
