@@ -28,7 +28,7 @@ _PASSES: Final = 200
 _ROUNDS: Final = 50
 _FORGET_AFTER: Final = 4
 _FORGET_EVERY: Final = 8
-"""Passes after which the relaxation forgets pairs that have come to rest: most jams end long before the worst."""
+"""Passes after which the relaxation forgets pairs at rest: most jams are resolved long before the worst."""
 _AT_REST: Final = 1e-12
 """Square of a move that is too short to go on with (m²)."""
 

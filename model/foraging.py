@@ -235,7 +235,7 @@ class GameModel(mesa.Model):
         self.datacollector.collect(self)
 
     def _move(self, _: Event) -> None:
-        """Have the robots decide, and move the bodies to the next decision or event; then wait for that instant."""
+        """Have the robots decide, move the bodies to the next decision or event, and wait for its instant."""
         env, kernel = self.env, self._kernel
         now = cast(int, env.now)
         while True:
