@@ -89,7 +89,8 @@ class Game(Checked):
         for k, swarm in enumerate(self.swarms):
             for name in set(deal(swarm.policy, len(swarm.policy.split("+")) + 1)):
                 make_policy(name, k, self.action_set)
-        step = self.parameters.period * self.body_preset.top_speed * max(s.drive for s in self.swarms)
+        fastest = max(max(swarm.drive, swarm.drive_action) for swarm in self.swarms)
+        step = self.parameters.period * self.body_preset.top_speed * fastest
         if step > SMALLEST_PART * self.body_preset.radius:
             raise InputError(
                 "period",
