@@ -62,13 +62,13 @@ def lead(game: Game, seeds: int) -> list[int]:
 @pytest.mark.slow
 @pytest.mark.parametrize("policies", ["avoid,avoid", "attack,attack", "mixed,mixed"])
 def test_equal_swarms_score_alike(policies: str) -> None:
-    assert may_be_zero(lead(make_game(policies, 20), 60))
+    assert may_be_zero(lead(make_game(policies, 20, duration=400.0), 60))
 
 
 @pytest.mark.slow
 def test_a_faster_swarm_scores_more() -> None:
     # The same test finds the difference that there is.
-    assert not may_be_zero(lead(make_game("avoid,avoid", 20, drive=0.7), 60))
+    assert not may_be_zero(lead(make_game("avoid,avoid", 20, duration=400.0, drive=0.7), 60))
 
 
 @pytest.mark.slow
@@ -76,8 +76,8 @@ def test_a_faster_swarm_scores_more() -> None:
 def test_swapping_labels_and_sides_mirrors_the_results(n: int) -> None:
     differences: dict[str, list[float]] = {name: [] for name in ("avoid", "attack", "t_a", "conflicts")}
     for seed in range(40):
-        attack, avoid = play(make_game("attack,avoid", n), seed).results()
-        avoid_there, attack_there = play(make_game("avoid,attack", n), 40 + seed).results()
+        attack, avoid = play(make_game("attack,avoid", n, duration=400.0), seed).results()
+        avoid_there, attack_there = play(make_game("avoid,attack", n, duration=400.0), 40 + seed).results()
         differences["avoid"].append(avoid["pucks"] - avoid_there["pucks"])
         differences["attack"].append(attack["pucks"] - attack_there["pucks"])
         differences["t_a"].append(attack["t_a_inter"] - attack_there["t_a_inter"])

@@ -183,6 +183,26 @@ def test_another_robot_ahead_interrupts_an_action_only_if_asked_to(scene: Scene,
         assert sum(model.robots[0].t_a) >= 30
 
 
+def test_an_interrupted_turn_has_no_end(scene: Scene) -> None:
+    # A slow turn to the left, which would take 34 periods, gives way to a longer one to the right.
+    model = scene(
+        [(0.0, 0.0, 0.0)],
+        [(0.3 * math.cos(1.0), 0.3 * math.sin(1.0), 1.0), (0.0, 0.8, 1.0)],
+        policies="attack,avoid",
+        changes={"preempt": True, "turning_rate": 0.3},
+    )
+    model.env.run(until=5)
+    heading = pose(model)[2]
+    model.robots[1].position = np.array([-0.5, 0.0])
+    model.robots[2].position = 0.3 * np.array([math.cos(heading - 1.05), math.sin(heading - 1.05)])
+    for now in range(6, 40):
+        model.env.run(until=now)
+        assert model.fleet.stride[0] == 0
+    model.env.run(until=5 + 35 + 3)
+    assert pose(model)[2] == pytest.approx(heading - 1.05)
+    assert math.dist(pose(model)[:2], (0.0, 0.0)) == pytest.approx(3 * 0.015)
+
+
 def test_the_same_robot_does_not_interrupt(scene: Scene) -> None:
     model = scene([(0.0, 0.0, 0.0)], AWAY_FROM_IT, policies="attack,avoid", changes={"preempt": True})
     model.env.run(until=10)

@@ -110,8 +110,8 @@ def test_a_body_refuses(field: str, value: float) -> None:
     [
         (1.0, 0.1, 10),
         (0.3, 0.1, 3),  # 0.3 / 0.1 is a little less than 3,
-        (1.1, 0.1, 11),  # and 1.1 / 0.1 a little more than 11
-        (0.7, 0.1, 7),
+        (0.14, 0.02, 7),  # and 0.14 / 0.02 a little more than 7
+        (0.33, 0.03, 11),
         (0.05, 0.05, 1),
         (0.31, 0.1, 4),
         (0.05, 0.1, 1),
