@@ -54,3 +54,5 @@ class Conflict(NamedTuple):
     active: int
     t_a: int
     t_p: int
+    reward: float
+    value: float

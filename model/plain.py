@@ -1,5 +1,6 @@
 """The same game from plain values and names, as `mesa.batch_run` passes them."""
 
+from agents.calls import split_outside
 from agents.errors import InputError
 from model.foraging import GameModel
 from model.game import Game, Swarm, apportion
@@ -24,8 +25,8 @@ class ForagingModel(GameModel):
         As in `model.game.Game`.
     parameters : str
         As in `model.parameters.parse_parameters`.
-    duration, side : float
-        As in `model.game.Game` (s, m).
+    duration, learning, side : float
+        As in `model.game.Game` (s, s, m).
     puck_limit, supply : int
         As in `model.game.Game`; 0 for none.
     seed, record, sample_period
@@ -50,6 +51,7 @@ class ForagingModel(GameModel):
         side: float = 2.0,
         puck_limit: int = 0,
         supply: int = 0,
+        learning: float = 0.0,
         seed: int = 0,
         record: str = "model",
         sample_period: float = 10.0,
@@ -63,12 +65,13 @@ class ForagingModel(GameModel):
             side=side,
             puck_limit=puck_limit or None,
             supply=supply or None,
+            learning=learning,
         )
         super().__init__(game, seed=seed, record=record, sample_period=sample_period)
 
 
 def _swarms(n: int, policies: str, shares: str, drives: str) -> tuple[Swarm, ...]:
-    names = [name.strip() for name in policies.split(",")]
+    names = split_outside(policies, ",")
     parts = _numbers("shares", shares, ":", int) if shares else [1] * len(names)
     if len(parts) != len(names) or min(parts) < 1:
         raise InputError("shares", shares, f"must be {len(names)} whole numbers ≥ 1 separated by ':'")

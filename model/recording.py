@@ -5,8 +5,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 from mesa import DataCollector
 
+from agents.actions import TOWARDS
 from agents.errors import InputError
 from agents.habits import Conflict
+from agents.learner import Learner
+from agents.policies import describe
 
 if TYPE_CHECKING:
     from model.foraging import GameModel
@@ -88,10 +91,10 @@ def add_conflicts(model: "GameModel", conflicts: Iterable[Conflict]) -> None:
     period = model.game.parameters.period
     for c in conflicts:
         row = (
-            *("game", c.robot, model.robots[c.robot].swarm + 1),
+            *(model.phase, c.robot, model.robots[c.robot].swarm + 1),
             *(c.opponent, model.robots[c.opponent].swarm + 1),
             *(c.start * period, c.x, c.y, c.action.name, c.t_a * period, c.t_p * period, c.active),
-            *(float("nan"), float("nan")),
+            *(c.reward, c.value),
         )
         model.datacollector.add_table_row("conflicts", dict(zip(_CONFLICT_COLUMNS, row, strict=True)))
 
@@ -107,6 +110,7 @@ def robots_table(model: "GameModel") -> Table:
         "pucks": [robot.pucks for robot in model.robots],
         "t_a": [sum(t_a) * period for t_a, _ in times],
         "t_p": [t_p * period for _, t_p in times],
+        "arms": [describe(robot.policy) for robot in model.robots],
     }
 
 
@@ -143,8 +147,35 @@ def result_rows(model: "GameModel") -> list[dict[str, Any]]:
                 "t_p": t_p * period,
                 "conflicts_intra": conflicts[k],
                 "conflicts_inter": sum(conflicts) - conflicts[k],
-                "duration": model.time,
+                "duration": model.duration,
                 "ended": model.ended,
             }
         )
+    return rows
+
+
+def policy_rows(model: "GameModel") -> list[dict[str, Any]]:
+    """Return, for each learning swarm, swarm learned about and action, the share of robots that chose it.
+
+    The columns of ``policies.parquet`` from ``swarm`` on.
+    """
+    rows = []
+    for k, members in enumerate(model.members):
+        learners = [robot.policy for robot in members if isinstance(robot.policy, Learner)]
+        for opponent in sorted({m for learner in learners for m in learner.bandits}):
+            learned = [learner.learned(opponent) for learner in learners if opponent in learner.bandits]
+            shares = {
+                a.name: sum(b.name == a.name for b in learned) / len(learned) for a in model.game.action_set
+            }
+            attack_share = sum(action.direction == TOWARDS for action in learned) / len(learned)
+            rows += [
+                {
+                    "swarm": k + 1,
+                    "opponent": opponent + 1,
+                    "action": name,
+                    "share": share,
+                    "attack_share": attack_share,
+                }
+                for name, share in shares.items()
+            ]
     return rows
