@@ -29,8 +29,8 @@ _ROUNDS: Final = 50
 _FORGET_AFTER: Final = 4
 _FORGET_EVERY: Final = 8
 """Passes after which the relaxation forgets pairs at rest: most jams are resolved long before the worst."""
-_AT_REST: Final = 1e-12
-"""Square of a move that is too short to go on with (m²)."""
+_AT_REST: Final = 1e-5
+"""Move of a pair's bodies in a pass that is too short to wait for (m)."""
 
 
 @compiled
@@ -196,9 +196,9 @@ def relax(positions: Floats, radius: float, half: float, work: Records, pairs: R
     radius, half : float
         Of the bodies; half the side of the arena (m).
     work : ndarray of `model.world.WORK`, shape (n,)
-        Written: ``move``, ``shove`` and ``count``.
+        Written.
     pairs : ndarray of `model.world.PAIR`, shape (≥ n_pairs,)
-        All pairs that can overlap; written: ``close``.
+        All pairs that can overlap; written: which are close.
     n_pairs : int
         How many there are.
 
@@ -208,38 +208,39 @@ def relax(positions: Floats, radius: float, half: float, work: Records, pairs: R
         Passes that were needed.
     """
     move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
-    count, queued, limit = work["count"], work["queued"], half - radius
+    count, limit = work["count"], half - radius
     for i in range(len(positions)):
         positions[i, 0] = min(limit, max(-limit, positions[i, 0]))
         positions[i, 1] = min(limit, max(-limit, positions[i, 1]))
-        move_x[i] = 0.0
-        move_y[i] = 0.0
         shove_x[i] = 0.0
         shove_y[i] = 0.0
         count[i] = 0
-        queued[i] = 0
     done = 0
     for _ in range(_ROUNDS):
         n_close, worst = _find_close(positions, radius, pairs, n_pairs)
         if worst <= TOLERANCE:
             break
-        n_queued = 0
+        for i in range(len(positions)):
+            move_x[i] = 0.0
+            move_y[i] = 0.0
+        n_queued = _queue_bodies(work, pairs, n_close)
         for _ in range(_PASSES):
             if done % _FORGET_EVERY == _FORGET_AFTER:
                 n_close = _forget_resting(positions, radius, work, pairs, n_close)
-            worst, n_queued = _measure_overlaps(positions, radius, work, pairs, n_close, n_queued)
-            n_queued = _part(positions, limit, work, n_queued, 0.0 if done < _PLAIN_PASSES else _MOMENTUM)
+                n_queued = _queue_bodies(work, pairs, n_close)
+            worst = _measure_overlaps(positions, radius, work, pairs, n_close)
+            _part(positions, limit, work, n_queued, 0.0 if done < _PLAIN_PASSES else _MOMENTUM)
             if worst <= TOLERANCE:
                 break
             done += 1
-        _stop(work, n_queued)
     return done
 
 
 @compiled
 def _find_close(positions: Floats, radius: float, pairs: Records, n_pairs: int) -> tuple[int, float]:
     """List the pairs with hardly a gap, and return their number and the greatest overlap (m)."""
-    first, second, close = pairs["first"], pairs["second"], pairs["close"]
+    first, second = pairs["first"], pairs["second"]
+    close_first, close_second = pairs["close_first"], pairs["close_second"]
     reach = (2.0 + _CLOSE) * radius
     nearest = reach * reach
     n_close = 0
@@ -248,51 +249,63 @@ def _find_close(positions: Floats, radius: float, pairs: Records, n_pairs: int) 
         dy = positions[second[k], 1] - positions[first[k], 1]
         squared = dx * dx + dy * dy
         if squared < reach * reach:
-            close[n_close] = k
+            close_first[n_close] = first[k]
+            close_second[n_close] = second[k]
             n_close += 1
             nearest = min(nearest, squared)
     return n_close, 2.0 * radius - math.sqrt(nearest)
 
 
 @compiled
+def _queue_bodies(work: Records, pairs: Records, n_close: int) -> int:
+    """List the bodies of the close pairs, and return their number."""
+    close_first, close_second = pairs["close_first"], pairs["close_second"]
+    queued, queue = work["queued"], work["queue"]
+    for i in range(len(work)):
+        queued[i] = 0
+    size = 0
+    for c in range(n_close):
+        for i in (close_first[c], close_second[c]):
+            if not queued[i]:
+                queued[i] = 1
+                queue[size] = i
+                size += 1
+    return size
+
+
+@compiled
 def _forget_resting(positions: Floats, radius: float, work: Records, pairs: Records, n_close: int) -> int:
     """Keep of the close pairs those that overlap or of which a body moves; return their number."""
-    first, second, close, queued = pairs["first"], pairs["second"], pairs["close"], work["queued"]
+    close_first, close_second = pairs["close_first"], pairs["close_second"]
+    move_x, move_y = work["move_x"], work["move_y"]
     kept = 0
     for c in range(n_close):
-        i = first[close[c]]
-        j = second[close[c]]
+        i = close_first[c]
+        j = close_second[c]
         dx = positions[j, 0] - positions[i, 0]
         dy = positions[j, 1] - positions[i, 1]
-        if queued[i] or queued[j] or dx * dx + dy * dy < 4.0 * radius * radius:
-            close[kept] = close[c]
+        moves = abs(move_x[i]) + abs(move_y[i]) + abs(move_x[j]) + abs(move_y[j])
+        if moves > _AT_REST or dx * dx + dy * dy < 4.0 * radius * radius:
+            close_first[kept] = i
+            close_second[kept] = j
             kept += 1
     return kept
 
 
 @compiled
-def _measure_overlaps(
-    positions: Floats, radius: float, work: Records, pairs: Records, n_close: int, n_queued: int
-) -> tuple[float, int]:
-    """Add up, for each body, half of each of its overlaps, and queue it.
-
-    Returns the greatest overlap (m) and how many bodies are queued.
-    """
-    first, second, close = pairs["first"], pairs["second"], pairs["close"]
+def _measure_overlaps(positions: Floats, radius: float, work: Records, pairs: Records, n_close: int) -> float:
+    """Add up, for each body, half of each of its overlaps; return the greatest overlap (m)."""
+    close_first, close_second = pairs["close_first"], pairs["close_second"]
     shove_x, shove_y, count = work["shove_x"], work["shove_y"], work["count"]
-    queued, queue = work["queued"], work["queue"]
-    near = 2.0 * radius
     worst = 0.0
     for c in range(n_close):
-        i = first[close[c]]
-        j = second[close[c]]
+        i = close_first[c]
+        j = close_second[c]
         dx = positions[j, 0] - positions[i, 0]
         dy = positions[j, 1] - positions[i, 1]
-        squared = dx * dx + dy * dy
-        if squared >= near * near:
-            continue
-        distance = math.sqrt(squared)
-        overlap = near - distance
+        # Without a branch for pairs that do not overlap: in a jam it would be guessed wrong half of the time.
+        distance = math.sqrt(dx * dx + dy * dy)
+        overlap = max(0.0, 2.0 * radius - distance)
         worst = max(worst, overlap)
         if distance == 0.0:  # exactly on top of each other: part them along x
             dx, distance = 1.0, 1.0
@@ -301,29 +314,25 @@ def _measure_overlaps(
         shove_y[i] -= part * dy
         shove_x[j] += part * dx
         shove_y[j] += part * dy
-        for robot in (i, j):
-            count[robot] += 1
-            if not queued[robot]:
-                queued[robot] = 1
-                queue[n_queued] = robot
-                n_queued += 1
-    return worst, n_queued
+        overlapping = 1 if overlap > 0.0 else 0
+        count[i] += overlapping
+        count[j] += overlapping
+    return worst
 
 
 @compiled
-def _part(positions: Floats, limit: float, work: Records, n_queued: int, momentum: float) -> int:
+def _part(positions: Floats, limit: float, work: Records, n_queued: int, momentum: float) -> None:
     """Move the queued bodies apart as measured, not beyond the walls, and forget the measures.
 
     A jam needs many passes, each of which carries a correction one body farther: a part of the last
-    pass's move is added, which makes it about five times fewer. Returns how many bodies stay queued.
+    pass's move is added, which makes it about five times fewer.
     """
     move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
-    count, queued, queue = work["count"], work["queued"], work["queue"]
-    kept = 0
+    count, queue = work["count"], work["queue"]
     for q in range(n_queued):
         i = queue[q]
         # Three and more corrections at once would overshoot: twice their mean does not.
-        scale = 1.0 if count[i] <= 2 else 2.0 / count[i]
+        scale = 2.0 / max(2, count[i])
         move_x[i] = momentum * move_x[i] + scale * shove_x[i]
         move_y[i] = momentum * move_y[i] + scale * shove_y[i]
         positions[i, 0] = min(limit, max(-limit, positions[i, 0] + move_x[i]))
@@ -331,21 +340,3 @@ def _part(positions: Floats, limit: float, work: Records, n_queued: int, momentu
         shove_x[i] = 0.0
         shove_y[i] = 0.0
         count[i] = 0
-        if move_x[i] * move_x[i] + move_y[i] * move_y[i] > _AT_REST:
-            queue[kept] = i
-            kept += 1
-        else:
-            move_x[i] = 0.0
-            move_y[i] = 0.0
-            queued[i] = 0
-    return kept
-
-
-@compiled
-def _stop(work: Records, n_queued: int) -> None:
-    """Let the queued bodies rest, so that the next round begins without their momentum."""
-    for q in range(n_queued):
-        i = work["queue"][q]
-        work["move_x"][i] = 0.0
-        work["move_y"][i] = 0.0
-        work["queued"][i] = 0

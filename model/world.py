@@ -40,7 +40,8 @@ PAIR: Final = np.dtype(
     [
         ("first", np.int64),  # the robot with the lower number
         ("second", np.int64),
-        ("close", np.int64),  # in row k, the k-th pair that is about to touch
+        ("close_first", np.int64),  # in row k, the k-th pair that is about to touch
+        ("close_second", np.int64),
     ]
 )
 """Two robots near each other."""
@@ -52,8 +53,8 @@ WORK: Final = np.dtype(
         ("shove_x", np.float64),  # what others add to it; in the relaxation, one pass's correction (m)
         ("shove_y", np.float64),
         ("count", np.int64),  # contacts; in the relaxation, overlaps
-        ("queued", np.int64),  # whether the relaxation moves it
-        ("queue", np.int64),  # in row k, the k-th robot that the relaxation moves
+        ("queued", np.int64),  # whether the relaxation may move it
+        ("queue", np.int64),  # in row k, the k-th robot that it may move
         ("origin_x", np.float64),  # position for which the neighbours were listed (m)
         ("origin_y", np.float64),
         ("cell_robots", np.int64),  # robots ordered by cell
