@@ -56,10 +56,6 @@ class Bandit:
         """Return Q(a) = Σ R / Σ (T(a) + T(p)) (Eq. 4.15), NaN if the arm was never tried."""
         return self.reward[arm] / self.time[arm] if self.time[arm] > 0.0 else math.nan
 
-    def untried(self) -> list[int]:
-        """Return the arms that were never tried."""
-        return [arm for arm, count in enumerate(self.count) if count == 0.0]
-
     def best(self) -> int | None:
         """Return the tried arm of the greatest Q, the first of equals; none if nothing was tried."""
         tried = [arm for arm, count in enumerate(self.count) if count > 0.0]

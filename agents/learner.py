@@ -1,4 +1,4 @@
-"""The learner: one bandit for each swarm-ID that a robot can meet (specification, section 1.5, Algorithm 1)."""
+"""The learner: a bandit for each swarm-ID that a robot can meet (section 1.5, Algorithm 1)."""
 
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -138,4 +138,4 @@ class Learner:
         ]
 
     def __repr__(self) -> str:
-        return f"Learner(swarm={self.swarm}, reward={self._reward!r}, rule={self._rule!r}, bandits={self.bandits})"
+        return f"Learner(swarm={self.swarm}, reward={self._reward!r}, rule={self._rule!r}, {self.bandits})"

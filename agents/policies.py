@@ -11,6 +11,7 @@ from typing import Any, Final, NamedTuple, Protocol
 from agents.actions import AWAY, TOWARDS, Action
 from agents.calls import parse_call, split_outside
 from agents.errors import InputError
+from agents.learned import LearnedPolicy
 from agents.learner import Learner
 from agents.streams import Purpose, Streams
 
@@ -28,12 +29,15 @@ class Setting(NamedTuple):
         The actions of the game.
     streams : Streams
         The robot's streams.
+    place : int
+        Number of the robot within its swarm, from 0.
     """
 
     swarm: int
     swarms: int
     actions: Sequence[Action]
     streams: Streams
+    place: int = 0
 
 
 class Policy(Protocol):
@@ -115,6 +119,7 @@ POLICIES: Final[dict[str, Callable[..., Policy]]] = {
     "learner": Learner,
     "inter-learner": partial(Learner, about="inter"),
     "intra-learner": partial(Learner, about="intra"),
+    "learned": LearnedPolicy,
 }
 """What builds each policy, by its name: called with a `Setting` and the arguments that the user wrote."""
 
@@ -184,5 +189,5 @@ def parts(policy: str) -> list[str]:
 
 
 def describe(policy: Policy) -> list[dict[str, Any]]:
-    """Return what a policy has learned, as `agents.learner.Learner.snapshot`; nothing if it does not learn."""
+    """Return what a policy has learned, as `Learner.snapshot` does; nothing if it does not learn."""
     return policy.snapshot() if isinstance(policy, Learner) else []

@@ -31,9 +31,9 @@ class Rule(Checked):
         draws : numpy.random.Generator
             The robot's own stream for this purpose.
         """
-        untried = bandit.untried()
-        if untried:
-            return untried[0] if len(untried) == 1 else untried[_pick(len(untried), draws)]
+        if 0.0 in bandit.count:
+            untried = [arm for arm, count in enumerate(bandit.count) if count == 0.0]
+            return untried[_pick(len(untried), draws)]
         return self.prefer(bandit, draws)
 
     def prefer(self, bandit: Bandit, draws: Generator) -> int:

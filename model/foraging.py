@@ -150,12 +150,12 @@ class GameModel(mesa.Model):
     @property
     def time(self) -> float:
         """Seconds since the beginning, that of learning included."""
-        return float(self.env.now * self.game.parameters.period)
+        return self.habits.seconds(cast(int, self.env.now))
 
     @property
     def duration(self) -> float:
         """Seconds of the measured game so far."""
-        return max(0.0, float((self.env.now - self._start) * self.game.parameters.period))
+        return self.habits.seconds(max(0, cast(int, self.env.now) - self._start))
 
     @property
     def supply(self) -> list[int]:
@@ -226,9 +226,9 @@ class GameModel(mesa.Model):
             strides = (parameters.period * body.top_speed * d for d in (swarm.drive, swarm.drive_action))
             stride_program, stride_action = strides
             self.members.append([])
-            for name in deal(swarm.policy, swarm.size):
+            for place, name in enumerate(deal(swarm.policy, swarm.size)):
                 streams = Streams(self.seed, index)
-                policy = make_policy(name, Setting(k, len(game.swarms), game.action_set, streams))
+                policy = make_policy(name, Setting(k, len(game.swarms), game.action_set, streams, place))
                 robot = Krembot(
                     *(self, index, k, policy, name, streams),
                     *(stride_program, stride_action, len(game.swarms)),
