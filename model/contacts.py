@@ -29,6 +29,8 @@ _ROUNDS: Final = 50
 _FORGET_AFTER: Final = 4
 _FORGET_EVERY: Final = 8
 """Passes after which the relaxation forgets pairs at rest: most jams are resolved long before the worst."""
+_TOUCH: Final = 1e-9
+"""Overlap below which two bodies only touch: less is the rounding of bodies that were parted exactly (m)."""
 _AT_REST: Final = 1e-5
 """Move of a pair's bodies in a pass that is too short to wait for (m)."""
 
@@ -212,9 +214,6 @@ def relax(positions: Floats, radius: float, half: float, work: Records, pairs: R
     for i in range(len(positions)):
         positions[i, 0] = min(limit, max(-limit, positions[i, 0]))
         positions[i, 1] = min(limit, max(-limit, positions[i, 1]))
-        shove_x[i] = 0.0
-        shove_y[i] = 0.0
-        count[i] = 0
     done = 0
     for _ in range(_ROUNDS):
         n_close, worst = _find_close(positions, radius, pairs, n_pairs)
@@ -223,15 +222,18 @@ def relax(positions: Floats, radius: float, half: float, work: Records, pairs: R
         for i in range(len(positions)):
             move_x[i] = 0.0
             move_y[i] = 0.0
+            shove_x[i] = 0.0
+            shove_y[i] = 0.0
+            count[i] = 0
         n_queued = _queue_bodies(work, pairs, n_close)
         for _ in range(_PASSES):
             if done % _FORGET_EVERY == _FORGET_AFTER:
                 n_close = _forget_resting(positions, radius, work, pairs, n_close)
                 n_queued = _queue_bodies(work, pairs, n_close)
             worst = _measure_overlaps(positions, radius, work, pairs, n_close)
-            _part(positions, limit, work, n_queued, 0.0 if done < _PLAIN_PASSES else _MOMENTUM)
             if worst <= TOLERANCE:
                 break
+            _part(positions, limit, work, n_queued, 0.0 if done < _PLAIN_PASSES else _MOMENTUM)
             done += 1
     return done
 
@@ -285,7 +287,7 @@ def _forget_resting(positions: Floats, radius: float, work: Records, pairs: Reco
         dx = positions[j, 0] - positions[i, 0]
         dy = positions[j, 1] - positions[i, 1]
         moves = abs(move_x[i]) + abs(move_y[i]) + abs(move_x[j]) + abs(move_y[j])
-        if moves > _AT_REST or dx * dx + dy * dy < 4.0 * radius * radius:
+        if moves > _AT_REST or dx * dx + dy * dy < (2.0 * radius - _TOUCH) ** 2:
             close_first[kept] = i
             close_second[kept] = j
             kept += 1
@@ -314,7 +316,7 @@ def _measure_overlaps(positions: Floats, radius: float, work: Records, pairs: Re
         shove_y[i] -= part * dy
         shove_x[j] += part * dx
         shove_y[j] += part * dy
-        overlapping = 1 if overlap > 0.0 else 0
+        overlapping = 1 if overlap > _TOUCH else 0
         count[i] += overlapping
         count[j] += overlapping
     return worst

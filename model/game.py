@@ -94,7 +94,8 @@ class Game(Checked):
             setting = Setting(k, len(self.swarms), self.action_set, Streams(0, 0))
             for text in parts(swarm.policy):
                 make_policy(text, setting)
-        step = self.parameters.period * self.body_preset.top_speed * max(s.drive for s in self.swarms)
+        fastest = max(max(swarm.drive, swarm.drive_action) for swarm in self.swarms)
+        step = self.parameters.period * self.body_preset.top_speed * fastest
         if step > SMALLEST_PART * self.body_preset.radius:
             raise InputError(
                 "period",

@@ -37,6 +37,8 @@ def advance(
 ) -> tuple[int, int]:
     """Go on from period `tick` to the first decision, but not beyond the start of `until`.
 
+    A period that has begun, with its pick-ups and deposits, comes to its percepts even if it is `until`.
+
     Parameters
     ----------
     positions : ndarray of float64, shape (n, 2)
