@@ -1,0 +1,166 @@
+"""The compiled kernel does what the plain reference does: on generated states, and through whole games."""
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from agents.fleet import IDLE, Fleet, Records
+from model.foraging import GameModel
+from model.game import Game, Swarm
+from model.parameters import PRESETS, Parameters
+from model.percepts import CONFLICT, EVENT, HOMING, LEG_DUE, PICK_UP
+from model.world import WORLD
+from tests.reference.compare import assert_same_events, assert_same_state, compared
+from tests.reference.kernel import Event, ReferenceKernel, State
+from tests.reference.states import Scene, make_scene, scenes
+
+ARGOS, FITTED = PRESETS["argos"], PRESETS["fitted"]
+
+
+@pytest.mark.slow
+@settings(deadline=None, max_examples=400)
+@given(scenes())
+def test_a_period_equals_the_reference(scene: Scene) -> None:
+    kernel = scene.kernel()
+    advance = compared(kernel, ReferenceKernel(scene.game, scene.arena), scene.fleet, [])
+    for tick in range(3):
+        while advance(tick, tick + 1)[1]:
+            pass  # nobody decides: the next stage of the same period follows
+
+
+def test_percepts_follow_pick_ups_even_when_time_stands_still() -> None:
+    game = make_game("avoid", 1, FITTED, "krembot-sim", 10)
+    scene = make_scene(game, game.arena(0).stations[:1], [0.0], 0.015)
+    scene.fleet.robots["phase"] = IDLE
+    kernel, calls = scene.kernel(), list[int]()
+    advance = compared(kernel, ReferenceKernel(game, scene.arena), scene.fleet, calls)
+    told = [(advance(0, until)[1], int(kernel.events["kind"][0])) for until in (0, 1, 0)]
+    assert told == [(0, 0), (1, PICK_UP), (1, LEG_DUE)]
+    assert advance(0, 0) == (0, 0)
+    assert calls == [0, 0, 0, 0]
+    assert advance(0, 1) == (1, 0)
+
+
+def play_compared(game: Game, seed: int, spoil_skin: float | None = None) -> tuple[GameModel, list[int]]:
+    """Play a game, every call of the kernel compared; return also how long the calls were."""
+    model = GameModel(game, seed)
+    kernel = model._kernel
+    calls: list[int] = []
+    if spoil_skin is not None:
+        assert isinstance(kernel.advance, partial)
+        world = next(array for array in kernel.advance.args if array.dtype == WORLD)
+        world["skin"] = spoil_skin
+    kernel.advance = compared(kernel, ReferenceKernel(game, model.arena), model.fleet, calls)
+    model.play()
+    return model, calls
+
+
+def make_game(policies: str, size: int, parameters: Parameters, body: str, duration: float) -> Game:
+    swarms = tuple(Swarm(policy=policy, size=size) for policy in policies.split(","))
+    return Game(swarms=swarms, parameters=parameters, body=body, duration=duration)
+
+
+@pytest.mark.parametrize(
+    "game",
+    [
+        make_game("avoid,attack", 10, FITTED, "krembot-sim", 25),
+        make_game("aggressive,mixed,avoid", 10, ARGOS, "krembot-sim", 20),
+        make_game("attack,attack", 20, FITTED.replace(preempt=True, push_share=0.5), "krembot-sim", 10),
+        make_game("avoid", 60, ARGOS.replace(preempt=True), "krembot", 10),
+    ],
+    ids=lambda game: f"{game.body}-{game.size}",
+)
+def test_a_game_equals_the_reference(game: Game) -> None:
+    model, calls = play_compared(game, seed=1)
+    assert sum(calls) == round(game.duration / game.parameters.period)
+    assert sum(t_a for k in range(len(game.swarms)) for t_a in model.times(k)[0]) > 0
+
+
+def test_long_calls_use_the_neighbours_of_now() -> None:
+    # Few robots, far apart: many periods in one call, in which everyone leaves the cells that the lists know.
+    game = make_game("avoid,attack", 3, FITTED.replace(leg_mean=60, wall_distance=0.3), "krembot", 200)
+    _, calls = play_compared(game, seed=3)
+    assert max(calls) * 0.015 > 10 * game.body_preset.radius
+
+
+# ------------------------------------------------------------------------------ what the comparison must find
+
+
+def test_a_stale_neighbour_list_is_found() -> None:
+    game = make_game("avoid,attack", 10, FITTED, "krembot-sim", 60)
+    with pytest.raises(AssertionError):
+        play_compared(game, seed=1, spoil_skin=100.0)
+
+
+@pytest.mark.parametrize(
+    "change", [{"friction": 0.2}, {"push_share": 0.1}, {"conflict_distance": 0.2}, {"active_range": 0.25}]
+)
+def test_a_rule_that_differs_is_found(change: dict[str, float]) -> None:
+    game = make_game("avoid,aggressive", 15, FITTED, "krembot-sim", 60)
+    other = game.replace(parameters=game.parameters.replace(**change))
+    model = GameModel(game, seed=1)
+    reference = ReferenceKernel(other, model.arena)
+    model._kernel.advance = compared(model._kernel, reference, model.fleet, [])
+    with pytest.raises(AssertionError):
+        model.play()
+
+
+def events_of_a_kernel() -> Records:
+    found = np.zeros(4, dtype=EVENT)
+    found["robot"] = 0, 2, 3, 4
+    found["kind"] = PICK_UP, CONFLICT, HOMING, LEG_DUE
+    found["other"] = 1, 3, 0, 0
+    found["active"][1], found["vacant"][1] = 2, 5
+    found["angle"] = 0.0, 0.5, -1.0, 0.0
+    return found
+
+
+EVENTS = (
+    Event(0, PICK_UP, other=1),
+    Event(2, CONFLICT, active=2, vacant=5, rivals=((3, 0.5), (4, -0.5))),
+    Event(3, HOMING, angle=-1.0),
+    Event(4, LEG_DUE),
+)
+
+
+def test_equal_events_pass() -> None:
+    assert_same_events(events_of_a_kernel(), list(EVENTS))
+
+
+@pytest.mark.parametrize(
+    ("index", "change"),
+    [
+        (0, {"other": 0}),
+        (0, {"robot": 1}),
+        (1, {"active": 3}),
+        (1, {"vacant": 4}),
+        (1, {"rivals": ((4, 0.5),)}),
+        (1, {"rivals": ((3, 0.51), (4, 0.5))}),
+        (2, {"angle": 1.0}),
+        (3, {"kind": HOMING}),
+    ],
+)
+def test_an_event_that_differs_is_found(index: int, change: dict[str, Any]) -> None:
+    expected = list(EVENTS)
+    expected[index] = expected[index]._replace(**change)
+    with pytest.raises(AssertionError):
+        assert_same_events(events_of_a_kernel(), expected)
+
+
+def test_an_event_too_many_is_found() -> None:
+    with pytest.raises(AssertionError):
+        assert_same_events(events_of_a_kernel(), list(EVENTS[:-1]))
+
+
+@pytest.mark.parametrize("field", ["positions", "heading", "forward_x", "forward_y"])
+def test_a_state_that_differs_is_found(field: str) -> None:
+    fleet = Fleet(np.zeros((2, 2)), np.zeros(2, dtype=np.int64), np.zeros(2))
+    state = State.of(fleet)
+    assert_same_state(fleet, state)
+    changed = fleet.positions if field == "positions" else fleet.robots[field]
+    changed[1] += 1e-8
+    with pytest.raises(AssertionError):
+        assert_same_state(fleet, state)

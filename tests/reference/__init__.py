@@ -1,0 +1,1 @@
+"""A second kernel in plain numpy, and generated states: what the compiled one is compared with."""

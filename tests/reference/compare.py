@@ -1,0 +1,66 @@
+"""Compares what the compiled kernel did with what the reference did."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from agents.fleet import Fleet, Records
+from model.kernel import Kernel
+from model.percepts import CONFLICT, HOMING, PICK_UP
+from tests.reference.kernel import Event, ReferenceKernel, State
+
+PRECISION = 1e-9
+"""Metres and radians by which the two may differ: the last bits, and what a jam makes of them."""
+
+
+def assert_same_events(found: Records, expected: list[Event]) -> None:
+    """Compare events: same order, same kinds, and what each kind tells."""
+    assert [(event["robot"], event["kind"]) for event in found] == [event[:2] for event in expected]
+    for event, reference in zip(found, expected, strict=True):
+        if reference.kind == PICK_UP:
+            assert event["other"] == reference.other, reference
+        elif reference.kind == HOMING:
+            assert _same_angle(event["angle"], reference.angle), reference
+        elif reference.kind == CONFLICT:
+            assert (event["active"], event["vacant"]) == (reference.active, reference.vacant), reference
+            assert any(
+                event["other"] == other and _same_angle(event["angle"], angle)
+                for other, angle in reference.rivals
+            ), reference
+
+
+def _same_angle(angle: float, other: float) -> bool:
+    return abs(math.remainder(angle - other, 2 * math.pi)) < PRECISION
+
+
+def assert_same_state(fleet: Fleet, expected: State) -> None:
+    """Compare positions and headings, and that the stored direction is the heading's."""
+    np.testing.assert_allclose(fleet.positions, expected.positions, rtol=0, atol=PRECISION)
+    robots = fleet.robots
+    np.testing.assert_allclose(robots["heading"], expected.heading, rtol=0, atol=PRECISION)
+    np.testing.assert_allclose(robots["forward_x"], np.cos(expected.heading), rtol=0, atol=PRECISION)
+    np.testing.assert_allclose(robots["forward_y"], np.sin(expected.heading), rtol=0, atol=PRECISION)
+
+
+def compared(
+    kernel: Kernel, reference: ReferenceKernel, fleet: Fleet, calls: list[int]
+) -> Callable[[int, int], tuple[int, int]]:
+    """Return the kernel's `advance`, which now has the reference do the same and compares.
+
+    Each call starts the reference from the kernel's state and adds the number of its periods to `calls`.
+    """
+    advance = kernel.advance
+
+    def advance_both(tick: int, until: int) -> tuple[int, int]:
+        state = State.of(fleet)
+        reference.supply = kernel.supply.tolist()
+        expected_tick, expected = reference.advance(state, tick, until)
+        reached, size = advance(tick, until)
+        assert reached == expected_tick
+        assert_same_events(kernel.events[:size], expected)
+        assert_same_state(fleet, state)
+        calls.append(reached - tick)
+        return reached, size
+
+    return advance_both

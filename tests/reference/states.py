@@ -1,0 +1,139 @@
+"""Generated states: games and robots in all phases, crowded, touching, at the walls."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from hypothesis import strategies as st
+from numpy.typing import ArrayLike
+
+from agents.fleet import ACTION, IDLE, Fleet, Floats, Integers
+from model.arena import Arena
+from model.game import Game, Swarm, apportion
+from model.kernel import Kernel
+from model.parameters import PRESETS
+
+_TRIES = 200
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A game, its arena, and robots in the middle of it."""
+
+    game: Game
+    arena: Arena
+    fleet: Fleet
+
+    def kernel(self) -> Kernel:
+        """Return a compiled kernel that moves these robots."""
+        return Kernel(self.game, self.arena, self.fleet)
+
+
+def unit(angle: float) -> Floats:
+    """Return the unit vector of a direction."""
+    return np.array((math.cos(angle), math.sin(angle)))
+
+
+def make_scene(game: Game, positions: ArrayLike, headings: ArrayLike, stride: ArrayLike) -> Scene:
+    """Put robots that do nothing but drive into a game, S1's first."""
+    sizes = [swarm.size for swarm in game.swarms]
+    swarm_of = np.repeat(np.arange(len(sizes)), sizes)
+    fleet = Fleet(np.array(positions, dtype=np.float64), swarm_of, np.array(headings, dtype=np.float64))
+    fleet.robots["stride"] = stride
+    fleet.robots["phase"] = ACTION  # asks for nothing
+    return Scene(game, game.arena(0), fleet)
+
+
+@st.composite
+def games(draw: st.DrawFn, largest: int = 60) -> Game:
+    """Draw a game: one to five swarms, either body, the parameters that the kernel reads."""
+    k = draw(st.integers(1, 5))
+    n = draw(st.integers(k, largest))
+    drive_action = draw(st.sampled_from((0.6, 0.4)))
+    preset = PRESETS[draw(st.sampled_from(tuple(PRESETS)))]
+    return Game(
+        swarms=tuple(
+            Swarm(policy="avoid", size=size, drive_action=drive_action) for size in apportion(n, [1] * k)
+        ),
+        body=draw(st.sampled_from(("krembot-sim", "krembot"))),
+        side=draw(st.sampled_from((2.0, 2.6))),
+        layout=draw(st.sampled_from(("symmetric", "nearer-station"))),
+        supply=draw(st.sampled_from((None, 1))),
+        parameters=preset.replace(
+            station_radius=0.16,
+            friction=draw(st.sampled_from((0.0, 0.18, 0.45, 1.5))),
+            push_share=draw(st.sampled_from((0.0, 0.3, 1.0))),
+            preempt=draw(st.booleans()),
+            front_half_angle=draw(st.sampled_from((math.radians(62.5), math.radians(100), math.pi))),
+            wall_distance=draw(st.sampled_from((0.06, 0.1))),
+        ),
+    )
+
+
+@st.composite
+def scenes(draw: st.DrawFn, largest: int = 60) -> Scene:
+    """Draw a game and robots in the middle of it.
+
+    What is continuous comes from a numpy generator with a drawn seed: so no two distances are equal and
+    none is a round number, and the one right answer does not hang on the last bit.
+    """
+    game = draw(games(largest))
+    draws = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    n, radius = game.size, game.body_preset.radius
+    fastest = game.parameters.period * game.body_preset.top_speed * 0.6
+    crowding = draw(st.sampled_from((0.0, 0.5, 0.95)))
+    positions = crowd(draws, n, radius, game.side / 2, crowding, gap=2 * fastest)
+    scene = make_scene(game, positions, draws.uniform(-math.pi, math.pi, n), 0.0)
+    robots = scene.fleet.robots
+    robots["phase"] = draws.integers(IDLE, ACTION + 1, n)
+    robots["carrying"] = draws.integers(0, 2, n)
+    robots["opponent"] = draws.integers(-1, n, n)
+    robots["stride"] = draws.choice((0.0, 0.5, 1.0), n, p=(0.2, 0.1, 0.7)) * fastest
+    robots["turn_rate"] = draws.choice((0.0, -0.296, 0.5), n, p=(0.6, 0.2, 0.2))
+    return scene
+
+
+def crowd(
+    draws: np.random.Generator, n: int, radius: float, half: float, crowding: float, gap: float
+) -> Floats:
+    """Place bodies one by one: each with probability `crowding` about to touch an earlier one or a wall."""
+    limit = half - radius
+    positions = np.empty((n, 2))
+    for robot in range(n):
+        for _ in range(_TRIES):
+            place = draws.uniform(-limit, limit, 2)
+            if robot > 0 and draws.random() < crowding:
+                angle = draws.uniform(-math.pi, math.pi)
+                reach = 2 * radius + draws.uniform(0, gap)
+                beside = positions[draws.integers(robot)]
+                place = np.clip(beside + reach * unit(angle), -limit, limit)
+            if (np.hypot(*(positions[:robot] - place).T) >= 2 * radius).all():
+                break
+        else:
+            return crowd(draws, n, radius, half, crowding / 2, gap)
+        positions[robot] = place
+    return positions
+
+
+def clone(scene: Scene, order: Integers | None = None) -> Scene:
+    """Copy a scene, its robots numbered in another order: new number k is old number ``order[k]``."""
+    chosen = np.arange(len(scene.fleet.positions)) if order is None else order
+    robots = scene.fleet.robots[chosen]
+    new_number = np.append(np.argsort(chosen), -1)  # the last for an opponent of -1
+    fleet = Fleet(scene.fleet.positions[chosen], robots["swarm"], robots["heading"])
+    fleet.robots[:] = robots
+    fleet.robots["opponent"] = new_number[robots["opponent"]]
+    return replace(scene, fleet=fleet)
+
+
+def mirrored(scene: Scene) -> Scene:
+    """Mirror a scene: left is right."""
+    image = clone(scene)
+    robots = image.fleet.robots
+    image.fleet.positions[:, 0] *= -1
+    robots["heading"] = np.where(robots["heading"] > 0, math.pi, -math.pi) - robots["heading"]
+    robots["forward_x"] *= -1
+    robots["turn_rate"] *= -1
+    flip = np.array((-1.0, 1.0))
+    arena = replace(scene.arena, stations=scene.arena.stations * flip, bases=scene.arena.bases * flip)
+    return replace(image, arena=arena)
