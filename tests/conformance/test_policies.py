@@ -1,0 +1,121 @@
+"""What every fixed policy must do (section 2.4); a new one brings its name and what it chooses."""
+
+import pickle
+from typing import Final
+
+import pytest
+
+from agents.actions import AWAY, TOWARDS, Action
+from agents.errors import InputError
+from agents.policies import Policy, deal, make_policy
+from model.game import Game, Swarm
+
+FLIGHT: Final = Action(name="flight", direction=AWAY, duration=1.8)
+FIGHT: Final = Action(name="fight", direction=TOWARDS, duration=1.0)
+DASH: Final = Action(name="dash", direction=AWAY, duration=0.05)
+STANDARD: Final = (FLIGHT, FIGHT)
+OPEN: Final = (DASH, FLIGHT, FIGHT)
+"""A longer set, in which the first action of a direction is not the standard one."""
+
+CHOICES: Final = {
+    # name: within the own swarm and against others, of the standard actions; the same of the longer set
+    "avoid": ((FLIGHT, FLIGHT), (DASH, DASH)),
+    "attack": ((FLIGHT, FIGHT), (DASH, FIGHT)),
+    "aggressive": ((FIGHT, FIGHT), (FIGHT, FIGHT)),
+    "flight": ((FLIGHT, FLIGHT), (FLIGHT, FLIGHT)),
+    "fight": ((FIGHT, FIGHT), (FIGHT, FIGHT)),
+}
+
+SWARMS: Final = range(4)
+
+every_policy = pytest.mark.parametrize("name", CHOICES)
+every_swarm = pytest.mark.parametrize("swarm", SWARMS)
+every_set = pytest.mark.parametrize("actions", [STANDARD, OPEN], ids=["standard", "open"])
+
+
+def choices(policy: Policy) -> list[Action]:
+    return [policy.choose(opponent) for opponent in SWARMS]
+
+
+def test_every_policy_is_here() -> None:
+    with pytest.raises(InputError, match=r"must be one of (.+), or several") as refusal:
+        make_policy("nonsense", 0, STANDARD)
+    named = refusal.value.allowed.removeprefix("must be one of ").partition(", or several")[0].split(", ")
+    assert set(named) == {*CHOICES, "mixed"}
+
+
+@every_set
+@every_swarm
+@every_policy
+def test_it_chooses_by_kind_of_opponent(name: str, swarm: int, actions: tuple[Action, ...]) -> None:
+    within, against = CHOICES[name][actions is OPEN]
+    policy = make_policy(name, swarm, actions)
+    assert choices(policy) == [within if opponent == swarm else against for opponent in SWARMS]
+
+
+@every_set
+@every_swarm
+@every_policy
+def test_it_chooses_the_same_again_and_after_pickling(
+    name: str, swarm: int, actions: tuple[Action, ...]
+) -> None:
+    policy, other = (make_policy(name, swarm, actions) for _ in range(2))
+    first = choices(policy)
+    assert choices(policy) == choices(other) == choices(pickle.loads(pickle.dumps(policy))) == first
+
+
+@every_policy
+def test_its_repr_tells_what_it_does(name: str) -> None:
+    (within, against), _ = CHOICES[name]
+    text = repr(make_policy(name, 2, STANDARD))
+    assert text == f"FixedPolicy(swarm=2, within={within.name!r}, against={against.name!r})"
+
+
+@every_policy
+def test_a_swarm_can_play_it_whole_or_in_part(name: str) -> None:
+    for policy in (name, f"{name}+avoid"):
+        game = Game(swarms=(Swarm(policy=policy, size=3), Swarm(policy="avoid", size=1)))
+        assert game.swarms[0].policy == policy
+    assert deal(name, 3) == [name] * 3
+
+
+def test_the_name_of_an_action_is_a_policy() -> None:
+    assert choices(make_policy("dash", 1, OPEN)) == [DASH] * 4
+    with pytest.raises(InputError, match="policy='dash'"):
+        make_policy("dash", 1, STANDARD)
+
+
+@pytest.mark.parametrize(
+    ("name", "actions"),
+    [("attack", (FLIGHT,)), ("attack", (FIGHT,)), ("avoid", (FIGHT,)), ("aggressive", (FLIGHT, DASH))],
+)
+def test_a_policy_needs_actions_of_its_directions(name: str, actions: tuple[Action, ...]) -> None:
+    with pytest.raises(InputError, match=f"policy='{name}': needs actions in both directions") as refusal:
+        make_policy(name, 0, actions)
+    assert all(action.name in str(refusal.value) for action in actions)
+
+
+@pytest.mark.parametrize(
+    ("policy", "size", "dealt"),
+    [
+        ("avoid", 0, ""),
+        ("avoid", 3, "avoid avoid avoid"),
+        ("mixed", 1, "avoid"),
+        ("mixed", 2, "avoid aggressive"),
+        ("mixed", 5, "avoid avoid avoid aggressive aggressive"),
+        ("avoid+aggressive", 5, "avoid avoid avoid aggressive aggressive"),
+        ("aggressive+avoid", 3, "aggressive aggressive avoid"),
+        ("attack+avoid+fight", 5, "attack attack avoid avoid fight"),
+        ("fight+flight", 4, "fight fight flight flight"),
+    ],
+)
+def test_a_swarm_is_dealt_equal_shares_and_the_rest_to_the_first(policy: str, size: int, dealt: str) -> None:
+    assert deal(policy, size) == dealt.split()
+
+
+@pytest.mark.parametrize(
+    "policy", ["", "Avoid", "avoid,attack", "avoid+", "avoid+peace", "learner", "avoid "]
+)
+def test_unknown_policies_are_refused(policy: str) -> None:
+    with pytest.raises(InputError, match=r"policy='[^']*': must be one of avoid, attack, aggressive, mixed"):
+        Game(swarms=(Swarm(policy=policy, size=2),))

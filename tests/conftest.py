@@ -1,0 +1,79 @@
+"""What tests of games share: a profile of hypothesis, games set up by hand, models that do not pile up."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import mesa
+import numpy as np
+import pytest
+from hypothesis import settings
+
+from model.foraging import GameModel
+from model.game import Game, Swarm
+from model.parameters import PRESETS
+
+# The first example of a test may compile the kernel: no deadline can tell that from a slow test.
+settings.register_profile("kswarms", deadline=None)
+settings.load_profile("kswarms")
+
+Pose = tuple[float, float, float]
+Scene = Callable[..., GameModel]
+
+
+@pytest.fixture(autouse=True)
+def _forget_models() -> Iterator[None]:
+    """Drop what Mesa keeps of every model in a table of its class."""
+    yield
+    mesa.Agent._ids.clear()
+
+
+@pytest.fixture
+def scene() -> Scene:
+    """Return a builder of games in which every robot stands where the test puts it."""
+
+    def build(
+        *swarms: Sequence[Pose],
+        policies: str = "",
+        preset: str = "fitted",
+        changes: dict[str, Any] | None = None,
+        drives: tuple[float, float] = (0.6, 0.6),
+        seed: int = 0,
+        record: str = "",
+        sample_period: float = 10.0,
+        **rest: Any,
+    ) -> GameModel:
+        """Build a game from the poses (m, m, rad) of each swarm.
+
+        Parameters
+        ----------
+        *swarms
+            The poses of each swarm's robots.
+        policies : str
+            Of each swarm, separated by commas; avoid if empty.
+        preset, changes
+            Preset of the parameters, and what differs from it.
+        drives : tuple of float
+            Drive of all in state P and in state A.
+        seed, record, sample_period
+            As in `GameModel`.
+        **rest
+            Fields of the game.
+        """
+        names = policies.split(",") if policies else ["avoid"] * len(swarms)
+        game = Game(
+            swarms=tuple(
+                Swarm(policy=name, size=len(poses), drive=drives[0], drive_action=drives[1])
+                for name, poses in zip(names, swarms, strict=True)
+            ),
+            parameters=PRESETS[preset].replace(**(changes or {})),
+            **{"duration": 60.0, **rest},
+        )
+        model = GameModel(game, seed=seed, record=record, sample_period=sample_period)
+        for robot, (x, y, heading) in zip(model.robots, [p for poses in swarms for p in poses], strict=True):
+            robot.position = np.array([x, y])
+            row = model.fleet.robots[robot.index : robot.index + 1]
+            row["heading"], row["forward_x"], row["forward_y"] = heading, math.cos(heading), math.sin(heading)
+        return model
+
+    return build

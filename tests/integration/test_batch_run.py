@@ -1,0 +1,111 @@
+"""Mesa's own batch runner sweeps a game unchanged, from a plain script, in one process and in two."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import mesa
+import pytest
+
+from model.plain import ForagingModel
+
+SCRIPT = """
+import json
+import sys
+
+import mesa
+
+from model.plain import ForagingModel
+
+if __name__ == "__main__":
+    rows = mesa.batch_run(
+        ForagingModel,
+        {
+            "n": [6, 13],
+            "policies": ["avoid,attack", "mixed"],
+            "seed": range(2),
+            "duration": 47.0,
+            "puck_limit": [0, 1],
+        },
+        number_processes=int(sys.argv[1]),
+        data_collection_period=int(sys.argv[2]),
+        display_progress=False,
+    )
+    print(json.dumps(rows))
+"""
+
+Row = dict[str, Any]
+
+
+def run_script(folder: Path, processes: int, period: int) -> list[Row]:
+    """Run the script in a fresh interpreter, away from the packages' own directory."""
+    script = folder / "sweep.py"
+    script.write_text(SCRIPT)
+    done = subprocess.run(
+        [sys.executable, "-W", "error", str(script), str(processes), str(period)],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    rows: list[Row] = json.loads(done.stdout)
+    return sorted(rows, key=lambda row: (row["RunId"], row["Step"]))
+
+
+def played(row: Row) -> ForagingModel:
+    """Return the game of a row, played directly."""
+    names = ("n", "policies", "seed", "duration", "puck_limit")
+    model = ForagingModel(**{name: row[name] for name in names})
+    model.play()
+    return model
+
+
+@pytest.mark.slow
+def test_two_processes_give_the_rows_of_one(tmp_path: Path) -> None:
+    one, two = (run_script(tmp_path, processes, 1) for processes in (1, 2))
+    assert one == two
+    assert len({row["RunId"] for row in one}) == 16
+    steps = [(row["Step"], row["time"]) for row in one if row["RunId"] == 0]
+    assert steps == [(0, 0.0), (1, 10.0), (2, 20.0), (3, 30.0), (4, 40.0), (5, 47.0)]
+    # Every sample of a run is there, the one at its end too, however it ended.
+    ends = {row["RunId"]: row for row in one}
+    for row in ends.values():
+        model = played(row)
+        samples = [other["time"] for other in one if other["RunId"] == row["RunId"]]
+        assert samples == model.sample_times
+        assert row["time"] == model.time
+        assert row["pucks_1"] == model.pucks[0]
+    assert len({row["time"] for row in ends.values()}) > 2
+
+
+@pytest.mark.slow
+def test_the_last_row_is_the_state_at_the_end(tmp_path: Path) -> None:
+    rows = run_script(tmp_path, 1, -1)  # the last of each run only
+    assert [row["RunId"] for row in rows] == list(range(16))
+    assert {row["time"] for row in rows if row["puck_limit"] == 0} == {47.0}
+    for row in rows:
+        for result in played(row).results():
+            k = result["swarm"]
+            time_in_action = result["t_a_intra"] + result["t_a_inter"]
+            assert (row[f"pucks_{k}"], row[f"sud_{k}"]) == (result["pucks"], result["sud"])
+            share = time_in_action / (time_in_action + result["t_p"])
+            assert (row[f"share_a_{k}"], row[f"share_p_{k}"]) == pytest.approx((share, 1 - share))
+
+
+def test_agents_have_their_rows_too() -> None:
+    rows = mesa.batch_run(
+        ForagingModel,
+        {"n": 4, "duration": 20.0, "record": "agents", "policies": "avoid,avoid"},
+        number_processes=1,
+        data_collection_period=1,
+        display_progress=False,
+    )
+    assert [(row["Step"], row["AgentID"]) for row in rows] == [(s, a) for s in range(3) for a in (1, 2, 3, 4)]
+    assert [row["swarm"] for row in rows[:4]] == [1, 1, 2, 2]
+    assert all({"state", "puck", "x", "y", "heading"} <= row.keys() for row in rows)
+    assert rows[0]["x"] != rows[-4]["x"]

@@ -1,0 +1,68 @@
+"""The physics against ARGoS: the same controller must lose as much time and gather as much there and here."""
+
+from collections.abc import Iterable
+from typing import Final
+
+import pandas as pd
+import pytest
+
+from analysis.fidelity import against_argos
+from scenarios.catalogue import ARGOS_DENSITIES, CATALOGUE
+from scenarios.description import Scenario
+from scenarios.runner import play_all
+from scenarios.runs import expand
+from scenarios.tables import tabulate
+
+pytestmark = pytest.mark.slow
+
+SCENARIOS: Final = [CATALOGUE[f"argos-{pair}"] for pair in ("avoid-avoid", "attack-attack", "avoid-attack")]
+UNEQUAL: Final = "argos-avoid-attack"
+"""The one whose time in conflict must agree from N = 16 on, and whose scores up to N = 16."""
+
+
+def compared(scenarios: Iterable[Scenario], densities: tuple[int, ...], seeds: int) -> pd.DataFrame:
+    """Play scenarios and lay them beside ARGoS."""
+    planned = [scenario.replace(densities=densities, seeds=seeds) for scenario in scenarios]
+    rows = [tabulate(run, outcome)["runs"].to_pandas() for run, outcome in play_all(expand(planned))]
+    return against_argos(pd.concat(rows))
+
+
+@pytest.fixture(
+    scope="module",
+    params=[
+        # N = 16 is where both demands on avoid against attack meet.
+        pytest.param(((6, 16, 46), 8), id="8 seeds"),
+        pytest.param((ARGOS_DENSITIES, 20), id="20 seeds", marks=pytest.mark.full),
+    ],
+)
+def comparison(request: pytest.FixtureRequest) -> pd.DataFrame:
+    densities, seeds = request.param
+    frame = compared(SCENARIOS, densities, seeds)
+    assert len(frame) == len(SCENARIOS) * len(densities) * 2
+    assert set(frame["seeds_ours"]) == {seeds}
+    return frame
+
+
+def test_the_share_of_time_in_conflict_agrees(comparison: pd.DataFrame) -> None:
+    demanded = comparison[(comparison["scenario"] != UNEQUAL) | (comparison["n"] >= 16)]
+    assert demanded[~demanded["share_fits"]].empty, demanded.to_string()
+
+
+def test_the_scores_agree(comparison: pd.DataFrame) -> None:
+    demanded = comparison[(comparison["scenario"] != UNEQUAL) | (comparison["n"] <= 16)]
+    assert demanded[~demanded["score_fits"]].empty, demanded.to_string()
+
+
+@pytest.mark.parametrize(
+    ("scenario", "change", "n", "verdict"),
+    [
+        ("argos-attack-attack", "push_share=0.5", 46, "score_fits"),  # who shoves gets through
+        ("argos-avoid-avoid", "conflict_distance=0.05", 26, "share_fits"),  # who sees less fights less
+    ],
+)
+def test_another_world_does_not_agree(scenario: str, change: str, n: int, verdict: str) -> None:
+    original = CATALOGUE[scenario]
+    (condition,) = original.conditions
+    changed = original.replace(conditions=(condition.replace(parameters=f"argos, {change}"),))
+    frame = compared([changed], (n,), 4)
+    assert not frame[verdict].any(), frame.to_string()

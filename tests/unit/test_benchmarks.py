@@ -1,0 +1,82 @@
+"""The benchmark in a tiny form: its pieces run, and work that is not done is noticed; no time is judged."""
+
+from typing import Any
+
+import pytest
+
+from benchmarks import bench
+from benchmarks.bench import Plan, WorkError, count_work, time_game
+from model.foraging import GameModel
+
+TINY = Plan("avoid,attack", 6, 30.0)
+
+
+@pytest.fixture
+def sleepless(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Spare the tests that print the tables new processes, which take seconds."""
+    monkeypatch.setattr(bench, "peak_memory", lambda code: float(len(code)))
+    monkeypatch.setattr(bench, "seconds_to_game", float)
+
+
+def test_the_same_seed_does_the_same_work_and_another_seed_other_work() -> None:
+    assert count_work(TINY, 1) == count_work(TINY, 1)
+    assert count_work(TINY, 1) != count_work(TINY, 2)
+
+
+def test_what_the_clock_processes_is_counted() -> None:
+    work = count_work(TINY, 1)
+    assert 0 < work.conflicts <= work.timeouts < work.events < work.scheduled
+
+
+def test_timing_takes_as_long_as_it_takes() -> None:
+    built, played = time_game(TINY, 1, count_work(TINY, 1))
+    assert built > 0
+    assert played > 0
+
+
+def test_a_game_cut_short_is_noticed_when_it_is_timed(monkeypatch: pytest.MonkeyPatch) -> None:
+    work = count_work(TINY, 1)
+    monkeypatch.setattr(GameModel, "play", lambda model: model.env.run(until=150))
+    with pytest.raises(WorkError, match="counted"):
+        time_game(TINY, 1, work)
+
+
+def test_a_game_cut_short_is_noticed_when_it_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(GameModel, "play", lambda model: model.env.run(until=150))
+    with pytest.raises(WorkError, match=r"90\.0 robot-seconds played, not 180\.0"):
+        count_work(TINY, 1)
+
+
+def test_robots_that_see_nobody_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    decide = GameModel._decide
+
+    def blind(model: GameModel, now: int, size: int) -> None:
+        model._kernel.events["kind"][:size] %= 3  # no conflicts any more
+        decide(model, now, size)
+
+    monkeypatch.setattr(GameModel, "_decide", blind)
+    with pytest.raises(WorkError, match="too little happened"):
+        count_work(TINY, 1)
+
+
+def test_the_bare_loop_processes_what_it_is_asked_to(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[Any] = []
+    timeout = bench.simpy.Environment.timeout
+    monkeypatch.setattr(bench.simpy.Environment, "timeout", lambda env, t: made.append(t) or timeout(env, t))
+    assert bench.time_bare_loop(6, 100) > 0
+    assert len(made) == 100
+
+
+def test_main_prints_four_tables(sleepless: None, capsys: pytest.CaptureFixture[str]) -> None:
+    bench.main(seeds=1, repetitions=1, duration=60.0, sizes=(6, 24))
+    printed = capsys.readouterr().out
+    assert printed.count("  bound") == 4
+    ((n, side, *_),) = [line.split() for line in printed.splitlines() if line.startswith("  24 ")]
+    assert (n, side) == ("24", "4.0")  # four times the robots on four times the area
+
+
+@pytest.mark.slow
+def test_new_processes_play_games() -> None:
+    code = "from model.plain import ForagingModel\nForagingModel(n=2, record='', duration=1.0).play()"
+    assert bench.peak_memory("pass") < bench.peak_memory(code) < 2000
+    assert bench.seconds_to_game(6) > 0
