@@ -1,12 +1,13 @@
 """Names with arguments, as users write them: ``ucb``, ``wlu(delta=0.145)``, ``learner(rule="greedy")``."""
 
 import ast
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple, TypeVar
 
 from agents.errors import InputError
+from agents.validation import Checked
 
-_Thing = TypeVar("_Thing")
+_Thing = TypeVar("_Thing", bound=Checked)
 
 
 class Call(NamedTuple):
@@ -36,17 +37,19 @@ def parse_call(field: str, text: str) -> Call:
     >>> parse_call("reward", "wlu(delta=0.145)")
     Call(name='wlu', arguments={'delta': 0.145})
     """
+    if not isinstance(text, str):
+        raise InputError(field, text, "must be a text: name or name(key=value, …)")
     name, bracket, rest = text.strip().partition("(")
     if not bracket:
         return Call(name.strip(), {})
     try:
         call = ast.parse(f"_({rest}", mode="eval").body
-        if not isinstance(call, ast.Call) or call.args:
+        if not (isinstance(call, ast.Call) and isinstance(call.func, ast.Name)) or call.args:
             raise ValueError
         arguments = {str(word.arg): ast.literal_eval(word.value) for word in call.keywords if word.arg}
         if len(arguments) < len(call.keywords):
             raise ValueError
-    except (SyntaxError, ValueError):
+    except (SyntaxError, ValueError, TypeError, RecursionError, MemoryError):
         raise InputError(field, text, "must be name or name(key=value, …) with plain values") from None
     return Call(name.strip(), arguments)
 
@@ -71,10 +74,26 @@ def build(field: str, text: str, known: Mapping[str, type[_Thing]]) -> _Thing:
     call = parse_call(field, text)
     if call.name not in known:
         raise InputError(field, call.name, f"must be one of {', '.join(known)}")
+    require_known(field, call, tuple(known[call.name].model_fields))
     try:
         return known[call.name](**call.arguments)
     except InputError as error:
         raise InputError(f"{field}.{error.field}", error.value, error.allowed) from None
+
+
+def require_known(field: str, call: Call, allowed: Collection[str]) -> None:
+    """Refuse a call with an argument that is not among `allowed`.
+
+    Raises
+    ------
+    InputError
+        If there is one.
+    """
+    for name, value in call.arguments.items():
+        if name not in allowed:
+            raise InputError(
+                f"{field}.{name}", value, f"no such field; there are {', '.join(allowed) or 'none'}"
+            )
 
 
 def split_outside(text: str, separator: str) -> list[str]:

@@ -62,6 +62,9 @@ class Learner:
                 raise InputError("otherwise", otherwise, f"must be one of {', '.join(by_name)}")
             self._otherwise = by_name[otherwise]
         self._reward = build("reward", reward, REWARDS)
+        for opponent in sorted(self._reward.opponents()):
+            if not 1 <= opponent <= setting.swarms:
+                raise InputError("reward", reward, f"names swarm {opponent}, the game has {setting.swarms}")
         self._rule = build("rule", rule, RULES)
         self._factor = self._rule.factor
         self.bandits = {

@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any, Final, NamedTuple, Protocol
 
 from agents.actions import AWAY, TOWARDS, Action
-from agents.calls import parse_call, split_outside
+from agents.calls import parse_call, require_known, split_outside
 from agents.errors import InputError
 from agents.learned import LearnedPolicy
 from agents.learner import Learner
@@ -111,17 +111,34 @@ def _fixed(setting: Setting, within: int, against: int) -> FixedPolicy:
     return FixedPolicy(setting.swarm, _first(setting.actions, within), _first(setting.actions, against))
 
 
-POLICIES: Final[dict[str, Callable[..., Policy]]] = {
-    "avoid": partial(_fixed, within=AWAY, against=AWAY),
-    "attack": partial(_fixed, within=AWAY, against=TOWARDS),
-    "aggressive": partial(_fixed, within=TOWARDS, against=TOWARDS),
-    "random": RandomPolicy,
-    "learner": Learner,
-    "inter-learner": partial(Learner, about="inter"),
-    "intra-learner": partial(Learner, about="intra"),
-    "learned": LearnedPolicy,
+class Kind(NamedTuple):
+    """A kind of policy.
+
+    Attributes
+    ----------
+    make : callable
+        Called with a `Setting` and the arguments that the user wrote.
+    arguments : tuple of str
+        The arguments that a user may write.
+    """
+
+    make: Callable[..., Policy]
+    arguments: tuple[str, ...] = ()
+
+
+_LEARNING: Final = ("reward", "rule", "otherwise")
+
+POLICIES: Final[dict[str, Kind]] = {
+    "avoid": Kind(partial(_fixed, within=AWAY, against=AWAY)),
+    "attack": Kind(partial(_fixed, within=AWAY, against=TOWARDS)),
+    "aggressive": Kind(partial(_fixed, within=TOWARDS, against=TOWARDS)),
+    "random": Kind(RandomPolicy),
+    "learner": Kind(Learner, ("about", *_LEARNING)),
+    "inter-learner": Kind(partial(Learner, about="inter"), _LEARNING),
+    "intra-learner": Kind(partial(Learner, about="intra"), _LEARNING),
+    "learned": Kind(LearnedPolicy, ("file",)),
 }
-"""What builds each policy, by its name: called with a `Setting` and the arguments that the user wrote."""
+"""Every kind of policy by its name."""
 
 _ALIASES: Final = {"mixed": "avoid+aggressive"}
 
@@ -146,15 +163,19 @@ def make_policy(text: str, setting: Setting) -> Policy:
         if action.name == text:
             return FixedPolicy(setting.swarm, action, action)
     call = parse_call("policy", text)
+    if call.name in (action.name for action in setting.actions):
+        raise InputError("policy", text, "an action takes no arguments")
     if call.name not in POLICIES:
         known = ", ".join([*POLICIES, *_ALIASES, *(action.name for action in setting.actions)])
         raise InputError("policy", call.name, f"must be one of {known}, or several joined by '+'")
+    kind = POLICIES[call.name]
+    require_known("policy", call, kind.arguments)
     try:
-        return POLICIES[call.name](setting, **call.arguments)
+        return kind.make(setting, **call.arguments)
     except InputError as error:
         raise InputError(f"policy.{error.field}", error.value, error.allowed) from None
     except TypeError as error:
-        raise InputError("policy", text, f"takes other arguments ({error})") from None
+        raise InputError("policy", text, f"lacks an argument ({error})") from None
 
 
 def deal(policy: str, size: int) -> list[str]:

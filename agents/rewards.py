@@ -5,13 +5,25 @@ A reward is a frozen description with a method; a new one is a subclass of `Rewa
 
 from typing import Annotated, Final
 
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
 from agents.body import SENSORS
 from agents.validation import Checked
 
+
+def _kind(value: object) -> str:
+    return "by-opponent" if isinstance(value, dict) else "for-all"
+
+
+# Told apart by what is given, so that an error speaks of the form that was meant.
 _Delta = Annotated[float, Field(ge=0, le=1)]
+_Deltas = Annotated[
+    Annotated[_Delta, Tag("for-all")] | Annotated[dict[int, _Delta], Tag("by-opponent")], Discriminator(_kind)
+]
 _Ratio = Annotated[float, Field(gt=0, lt=3)]
+_Ratios = Annotated[
+    Annotated[_Ratio, Tag("for-all")] | Annotated[dict[int, _Ratio], Tag("by-opponent")], Discriminator(_kind)
+]
 
 
 def sigma(inter: bool, direction: int) -> int:
@@ -21,6 +33,10 @@ def sigma(inter: bool, direction: int) -> int:
 
 class Reward(Checked):
     """Base of the rewards."""
+
+    def opponents(self) -> frozenset[int]:
+        """Return the swarm-IDs (from 1) that it names."""
+        return frozenset()
 
     def of(self, t_a: float, t_p: float, n_active: int, direction: int, inter: bool, opponent: int) -> float:
         """Return R of a closed conflict (s).
@@ -52,8 +68,12 @@ class WLU(Reward):
         The opponent's advantage β_m/β_i, likewise (1 for those not named).
     """
 
-    delta: _Delta | dict[int, _Delta] = 0.125
-    b: _Ratio | dict[int, _Ratio] = 1.0
+    delta: _Deltas = 0.125
+    b: _Ratios = 1.0
+
+    def opponents(self) -> frozenset[int]:
+        """Return the swarm-IDs that have a Δ or b of their own."""
+        return frozenset(swarm for each in (self.delta, self.b) if isinstance(each, dict) for swarm in each)
 
     def of(self, t_a: float, t_p: float, n_active: int, direction: int, inter: bool, opponent: int) -> float:
         """Return R (s)."""

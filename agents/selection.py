@@ -13,6 +13,10 @@ from agents.bandit import Bandit
 from agents.validation import Checked
 
 
+FORGOTTEN: Final = 1e-12
+"""An arm whose discounted count is less counts as never tried."""
+
+
 class Rule(Checked):
     """Base of the selection rules: arms never tried come first, in random order."""
 
@@ -31,8 +35,8 @@ class Rule(Checked):
         draws : numpy.random.Generator
             The robot's own stream for this purpose.
         """
-        if 0.0 in bandit.count:
-            untried = [arm for arm, count in enumerate(bandit.count) if count == 0.0]
+        if min(bandit.count) < FORGOTTEN:
+            untried = [arm for arm, count in enumerate(bandit.count) if count < FORGOTTEN]
             return untried[_pick(len(untried), draws)]
         return self.prefer(bandit, draws)
 

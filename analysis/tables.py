@@ -65,14 +65,17 @@ def learned(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataFrame:
         .reset_index()
         .merge(learned_percentages(), how="left", on=["scenario", "learned", "n"])
     )
-    reach = stats.t.ppf(0.5 + CONFIDENCE / 2, cells["seeds"].to_numpy() - 1) * cells.pop("deviation")
-    cells.insert(8, "low", (cells["measured"] - reach).clip(lower=0))
-    cells.insert(9, "high", (cells["measured"] + reach).clip(upper=100))
-    cells["error"] = cells["measured"] - cells["published"]
+    reach = stats.t.ppf(0.5 + CONFIDENCE / 2, cells["seeds"].to_numpy() - 1) * cells["deviation"]
+    cells = cells.assign(
+        low=(cells["measured"] - reach).clip(lower=0),
+        high=(cells["measured"] + reach).clip(upper=100),
+        error=cells["measured"] - cells["published"],
+    )
     order = {scenario: index for index, scenario in enumerate(scenarios)}
-    return cells.sort_values(
+    cells = cells.sort_values(
         _CELL, key=lambda values: values.map(order) if values.name == "scenario" else values
     ).reset_index(drop=True)
+    return cells[[*_CELL, "learned", "seeds", "measured", "low", "high", "published", "error"]]
 
 
 def mean_absolute_error(cells: pd.DataFrame) -> float:

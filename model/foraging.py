@@ -109,7 +109,7 @@ class GameModel(mesa.Model):
     def __init__(self, game: Game, seed: int = 0, record: str = "", sample_period: float = 10.0) -> None:
         if not isinstance(seed, int | np.integer) or seed < 0:
             raise InputError("seed", seed, "must be a whole number ≥ 0")
-        if not 0 < sample_period < math.inf:
+        if not isinstance(sample_period, float | int | np.number) or not 0 < sample_period < math.inf:
             raise InputError("sample_period", sample_period, "must be a number of seconds > 0")
         recorded = recording.parse_record(record)
         super().__init__(seed=int(seed))

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import Self
+from typing import Final, Self
 
 from pydantic import Field, model_validator
 
@@ -15,8 +15,8 @@ from agents.validation import Checked
 from model.arena import LAYOUTS, Arena, build_arena
 from model.parameters import PRESETS, Parameters
 
-SMALLEST_PART = 0.5
-"""Part of its radius that a robot may at most cover in a period, so that contacts are not jumped over."""
+LONGEST_STEP: Final = 0.8
+"""What a robot may cover in a period, as a part of its radius: two that meet must not pass each other."""
 
 
 class Swarm(Checked):
@@ -96,11 +96,17 @@ class Game(Checked):
                 make_policy(text, setting)
         fastest = max(max(swarm.drive, swarm.drive_action) for swarm in self.swarms)
         step = self.parameters.period * self.body_preset.top_speed * fastest
-        if step > SMALLEST_PART * self.body_preset.radius:
+        if step > LONGEST_STEP * self.body_preset.radius:
             raise InputError(
                 "period",
                 self.parameters.period,
-                "must be so short that a robot covers half its radius at most",
+                f"must be so short that a robot covers at most {LONGEST_STEP} of its radius",
+            )
+        reach = self.body_preset.radius + self.body_preset.sensing_scale * self.parameters.wall_distance
+        if reach > self.side / 2:
+            # Else a robot could have walls ahead in every direction, and never find where to turn.
+            raise InputError(
+                "wall_distance", self.parameters.wall_distance, "must be less than half the arena"
             )
         self._check_room()
         return self

@@ -1,5 +1,7 @@
 """The same game from plain values and names, as `mesa.batch_run` passes them."""
 
+import numpy as np
+
 from agents.calls import split_outside
 from agents.errors import InputError
 from model.foraging import GameModel
@@ -80,9 +82,9 @@ def _swarms(n: int, policies: str, shares: str, drives: str) -> tuple[Swarm, ...
     )
     if len(pairs) != len(names):
         raise InputError("drives", drives, f"must be {len(names)} numbers separated by ','")
-    if not isinstance(n, int) or n < len(names):
+    if not isinstance(n, int | np.integer) or n < len(names):
         raise InputError("n", n, f"must be a whole number ≥ {len(names)}, one robot for each swarm")
-    sizes = apportion(n, parts)
+    sizes = apportion(int(n), parts)
     return tuple(
         Swarm(policy=name, size=size, drive=drive, drive_action=drive_action or 0.6)
         for name, size, (drive, _, drive_action) in zip(names, sizes, pairs, strict=True)

@@ -53,7 +53,7 @@ class Deadly(Run):
 @pytest.mark.slow
 def test_workers_and_order_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(runner, "GAMES_A_WORKER", 3)  # so that workers are replaced on the way
-    runs = short("fig-6.1c") + short("fig-6.4a") + short("fig-6.15", densities=(7,), seeds=1)
+    runs = short("fig-6.1c") + short("fig-6.4a", (6,)) + short("fig-6.15", (7,), seeds=1)
     record = ",".join(RECORDS)
     here = by_name(play_all(runs, 1, record))
     shuffled = random.Random(3).sample(runs, len(runs))

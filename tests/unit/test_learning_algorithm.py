@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from agents.learner import Learner
-from agents.policies import POLICIES
+from agents.policies import POLICIES, Kind
 from agents.rewards import WLU
 from agents.selection import UCB
 from model.foraging import GameModel
@@ -64,7 +64,7 @@ def learned_rows(model: GameModel) -> Iterator[tuple[Any, list[Row]]]:
 @pytest.fixture(scope="module", params=[False, True], ids=["whole actions", "preempt"])
 def spied(request: pytest.FixtureRequest) -> GameModel:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(POLICIES, "spy", Spy)
+        patch.setitem(POLICIES, "spy", Kind(Spy))
         model = GameModel(game("spy", preempt=request.param), seed=3, record="conflicts")
         model.play()
     return model
@@ -120,7 +120,7 @@ def test_a_conflict_has_no_program_time_if_the_next_begins_as_its_action_ends(sp
 @pytest.mark.parametrize("preempt", [False, True])
 def test_times_are_those_seen_from_outside(monkeypatch: pytest.MonkeyPatch, preempt: bool) -> None:
     """T(a): periods in state A from a conflict's start on; T(p): those in state P up to the next one."""
-    monkeypatch.setitem(POLICIES, "spy", Spy)
+    monkeypatch.setitem(POLICIES, "spy", Kind(Spy))
     model = GameModel(game("spy", preempt=preempt, learning=60.0), seed=1, sample_period=PERIOD)
     watched: dict[int, list[list[int]]] = {robot.index: [] for robot in model.members[1]}
     begun = dict.fromkeys(watched, 0)

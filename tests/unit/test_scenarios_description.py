@@ -146,7 +146,7 @@ def test_a_world_that_cannot_be_is_refused_with_the_scenario(world: dict[str, ob
         ("dance", "policy='dance': must be one of avoid, attack, aggressive, random, learner"),
         ("inter-learner(reward='gold')", "reward='gold': must be one of wlu, individual, single-swarm"),
         ("inter-learner(rule='best')", "rule='best': must be one of ucb, discounted-ucb, greedy"),
-        ("inter-learner(about='all')", "about='all': must be inter, intra or both"),
+        ("learner(about='all')", "about='all': must be inter, intra or both"),
         ("inter-learner(otherwise='hop')", "otherwise='hop': must be one of flight, fight"),
         ("inter-learner(rule='ucb(gamma=-1)')", "gamma=-1: must be greater than or equal to 0"),
         ("inter-learner(rule='discounted-ucb(discount=0)')", "discount=0: must be greater than 0"),
@@ -158,7 +158,7 @@ def test_a_world_that_cannot_be_is_refused_with_the_scenario(world: dict[str, ob
         ("inter-learner(reward='wlu(b=3)')", "=3: must be less than 3"),
         ("inter-learner(reward='wlu(beta=3)')", "beta=3: no such field; there are delta, b"),
         ("inter-learner(reward='wlu(delta=0.1')", "must be name or name(key=value, …)"),
-        ("avoid(speed=3)", "policy='avoid(speed=3)': takes other arguments"),
+        ("avoid(speed=3)", "policy.speed=3: no such field; there are none"),
     ],
 )
 def test_a_policy_that_cannot_be_is_refused_in_a_line_that_says_why(policy: str, complaint: str) -> None:
