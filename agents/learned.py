@@ -35,7 +35,9 @@ class LearnedPolicy:
         If there is no such file, or what was learned does not fit the game.
     """
 
-    def __init__(self, setting: "Setting", file: str) -> None:
+    def __init__(self, setting: "Setting", file: str = "") -> None:
+        if not isinstance(file, str) or not file:
+            raise InputError("file", file, "must be the path of a file of learned policies")
         saved = load(Path(file))
         if saved["swarm"] != setting.swarm + 1:
             raise InputError(

@@ -174,8 +174,6 @@ def make_policy(text: str, setting: Setting) -> Policy:
         return kind.make(setting, **call.arguments)
     except InputError as error:
         raise InputError(f"policy.{error.field}", error.value, error.allowed) from None
-    except TypeError as error:
-        raise InputError("policy", text, f"lacks an argument ({error})") from None
 
 
 def deal(policy: str, size: int) -> list[str]:

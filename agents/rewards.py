@@ -16,11 +16,11 @@ def _kind(value: object) -> str:
 
 
 # Told apart by what is given, so that an error speaks of the form that was meant.
-_Delta = Annotated[float, Field(ge=0, le=1)]
+_Delta = Annotated[float, Field(strict=True, ge=0, le=1)]
 _Deltas = Annotated[
     Annotated[_Delta, Tag("for-all")] | Annotated[dict[int, _Delta], Tag("by-opponent")], Discriminator(_kind)
 ]
-_Ratio = Annotated[float, Field(gt=0, lt=3)]
+_Ratio = Annotated[float, Field(strict=True, gt=0, lt=3)]
 _Ratios = Annotated[
     Annotated[_Ratio, Tag("for-all")] | Annotated[dict[int, _Ratio], Tag("by-opponent")], Discriminator(_kind)
 ]

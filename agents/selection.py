@@ -12,7 +12,6 @@ from pydantic import Field
 from agents.bandit import Bandit
 from agents.validation import Checked
 
-
 FORGOTTEN: Final = 1e-12
 """An arm whose discounted count is less counts as never tried."""
 
