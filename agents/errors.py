@@ -40,7 +40,10 @@ class InputError(ValueError):
             Names of the fields that exist, to be named when an unknown one was given.
         """
         first = error.errors()[0]
-        path = ".".join(str(part) for part in first["loc"])
+        # Where a field may have several types, pydantic puts the name of the type into the path.
+        path = ".".join(
+            str(part) for part in first["loc"] if str(part).isidentifier() or isinstance(part, int)
+        )
         cause = first.get("ctx", {}).get("error")
         if isinstance(cause, InputError):
             return cls(f"{path}.{cause.field}" if path else cause.field, cause.value, cause.allowed)

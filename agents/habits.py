@@ -41,6 +41,10 @@ class Habits(NamedTuple):
         # A billionth of a period forgives what a quotient like 0.3 / 0.1 is too large.
         return max(1, math.ceil(seconds / self.period - 1e-9))
 
+    def seconds(self, periods: int) -> float:
+        """Return how long some periods take (s), without the dust of binary fractions."""
+        return round(periods * self.period, 9)
+
 
 class Conflict(NamedTuple):
     """One interaction of a robot, from the start of its action to the start of the next; times in periods."""
@@ -54,3 +58,5 @@ class Conflict(NamedTuple):
     active: int
     t_a: int
     t_p: int
+    reward: float
+    value: float

@@ -11,16 +11,16 @@ from typing import Any, Final, Protocol, cast
 
 import simpy
 from mesa.experimental.continuous_space import ContinuousSpace, ContinuousSpaceAgent
-from numpy.random import Generator
 from simpy.events import Timeout
 
 from agents.actions import TOWARDS, Action
 from agents.body import SENSORS
 from agents.fleet import ACTION, HOME, HOME_TURN, HOMING_ERROR, IDLE, LEG, LEG_OVER, TURN, Fleet
 from agents.habits import Conflict, Habits
+from agents.learner import Learner
 from agents.policies import Policy
 from agents.sensors import SECTOR, heads_for, walls_met, wrap
-from agents.streams import Purpose, stream
+from agents.streams import Purpose, Streams
 
 _STRAIGHT: Final = 1e-9
 """A turn by less than this angle is none (rad)."""
@@ -39,7 +39,6 @@ class World(Protocol):
     fleet: Fleet
     habits: Habits
     action_periods: Mapping[str, int]
-    seed: int
     conflict_log: list[Conflict] | None
 
 
@@ -55,9 +54,11 @@ class Krembot(ContinuousSpaceAgent):
     swarm : int
         Its swarm-ID, from 0.
     policy : Policy
-        Decides at a conflict.
+        Decides at a conflict; if it has a method ``learn``, it is told how each conflict ended.
     policy_name : str
         Under which the policy was asked for.
+    streams : Streams
+        Its random streams.
     stride_program, stride_action : float
         What it drives in a period in state P and in state A (m).
     swarms : int
@@ -82,6 +83,7 @@ class Krembot(ContinuousSpaceAgent):
         swarm: int,
         policy: Policy,
         policy_name: str,
+        streams: Streams,
         stride_program: float,
         stride_action: float,
         swarms: int,
@@ -96,7 +98,9 @@ class Krembot(ContinuousSpaceAgent):
         self.t_p = 0
         self.conflicts = [0] * swarms
         self._env = model.env
-        self._seed = model.seed
+        self._draws = streams.draws
+        self._learn: Callable[[float, float, int], tuple[float, float]] | None
+        self._learn = getattr(policy, "learn", None)
         self._fleet = model.fleet
         self._phase = model.fleet.phase
         self._stride = model.fleet.stride
@@ -107,16 +111,19 @@ class Krembot(ContinuousSpaceAgent):
         self._log = model.conflict_log
         self._stride_program = stride_program
         self._stride_action = stride_action
-        self._streams: dict[Purpose, Generator] = {}
         self._timer: Timeout | None = None
         self._since = int(model.env.now)
         """When the current action or program began."""
         self._action: Action | None = None
-        """Action of the conflict that is not closed yet."""
+        """Action of the last conflict."""
+        self._is_open = False
+        """Whether a conflict waits to be closed."""
+        self._active = 0
+        """Sensors that were active when it began."""
         self._opponent_swarm = -1
         """Swarm of the robot met last."""
         self._open: tuple[Any, ...] = ()
-        """First fields of its `Conflict`, if conflicts are logged."""
+        """First fields of the open `Conflict`, if conflicts are logged."""
         self._open_t_a = 0
 
     # What others may ask.
@@ -220,6 +227,8 @@ class Krembot(ContinuousSpaceAgent):
         action = self._action = self.policy.choose(swarm)
         self._fleet.opponent[index] = other
         self._opponent_swarm = swarm
+        self._is_open = True
+        self._active = active
         self.conflicts[swarm] += 1
         if self._log is not None:
             x, y = self._fleet.positions[index].tolist()
@@ -232,8 +241,16 @@ class Krembot(ContinuousSpaceAgent):
             self._timer = None
             self._drive_action(None)
 
-    def close(self, now: int) -> None:
-        """Count the time up to `now` (periods) and end the open conflict: at the next, or with the game."""
+    def close(self, now: int, learn: bool = True) -> None:
+        """Count the time up to `now` (periods) and end the open conflict.
+
+        Parameters
+        ----------
+        now : int
+            The time (periods).
+        learn : bool
+            Whether the policy is told; not where the end is not the next conflict, but that of the phase.
+        """
         elapsed = now - self._since
         self._since = now
         if self._phase[self.index] == ACTION:  # overtaken: no program time
@@ -241,8 +258,30 @@ class Krembot(ContinuousSpaceAgent):
             self._open_t_a = elapsed
             elapsed = 0
         self.t_p += elapsed
-        if self._log is not None and self._action is not None:
-            self._log.append(Conflict._make((*self._open, self._open_t_a, elapsed)))
+        if self._is_open:
+            self._is_open = False
+            if self._learn is not None or self._log is not None:
+                self._settle(elapsed, learn)
+
+    def _settle(self, t_p: int, learn: bool) -> None:
+        """Reward the conflict that ends with T(p) = `t_p` (periods), and log it."""
+        reward = value = math.nan
+        if learn and self._learn is not None:
+            period = self._habits.period
+            reward, value = self._learn(self._open_t_a * period, t_p * period, self._active)
+        if self._log is not None:
+            self._log.append(Conflict._make((*self._open, self._open_t_a, t_p, reward, value)))
+
+    def restart(self, now: int) -> None:
+        """Begin the measured game: scores, times and conflicts from 0, and nothing more is learned."""
+        self.close(now, learn=False)
+        self.pucks = 0
+        self.t_a = [0] * len(self.t_a)
+        self.t_p = 0
+        self.conflicts = [0] * len(self.conflicts)
+        if self._learn is not None:
+            self._learn = None
+            cast(Learner, self.policy).freeze()
 
     def _vacant_direction(self, vacant: int) -> float:
         """Return the angle of the most vacant sensor from the heading (rad), ties broken at random."""
@@ -294,9 +333,3 @@ class Krembot(ContinuousSpaceAgent):
         """Call `then` after a time, with the event that is then `_timer`, unless another wait has begun."""
         timer = self._timer = Timeout(self._env, periods, what)
         timer.callbacks.append(then)
-
-    def _draws(self, purpose: Purpose) -> Generator:
-        draws = self._streams.get(purpose)
-        if draws is None:
-            draws = self._streams[purpose] = stream(self._seed, self.index, purpose)
-        return draws

@@ -1,13 +1,43 @@
-"""Fixed policies: which action against which swarm (specification, section 2.4).
+"""Policies: which action against which swarm (specification, section 2.4).
 
-A policy is asked once for each conflict, with what the robot knows of the other: its swarm-ID.
+A policy is asked once for each conflict, with what the robot knows of the other: its swarm-ID. One that
+learns is also told how each conflict ended.
 """
 
-from collections.abc import Mapping, Sequence
-from typing import Final, Protocol
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any, Final, NamedTuple, Protocol
 
 from agents.actions import AWAY, TOWARDS, Action
+from agents.calls import parse_call, require_known, split_outside
 from agents.errors import InputError
+from agents.learned import LearnedPolicy
+from agents.learner import Learner
+from agents.streams import Purpose, Streams
+
+
+class Setting(NamedTuple):
+    """What a policy is built for.
+
+    Attributes
+    ----------
+    swarm : int
+        Swarm of the robot, counted from 0.
+    swarms : int
+        Number of swarms.
+    actions : sequence of Action
+        The actions of the game.
+    streams : Streams
+        The robot's streams.
+    place : int
+        Number of the robot within its swarm, from 0.
+    """
+
+    swarm: int
+    swarms: int
+    actions: Sequence[Action]
+    streams: Streams
+    place: int = 0
 
 
 class Policy(Protocol):
@@ -44,42 +74,106 @@ class FixedPolicy:
         return f"FixedPolicy(swarm={self.swarm}, within={self.within.name!r}, against={self.against.name!r})"
 
 
-# Directions within the own swarm and against others; the action is the set's first of its direction.
-_FIXED: Final = {"avoid": (AWAY, AWAY), "attack": (AWAY, TOWARDS), "aggressive": (TOWARDS, TOWARDS)}
+class RandomPolicy:
+    """Flight within the own swarm; against others flight or fight with equal probability.
+
+    Parameters
+    ----------
+    setting : Setting
+        Where it plays.
+    """
+
+    def __init__(self, setting: Setting) -> None:
+        self.swarm = setting.swarm
+        self._within = _first(setting.actions, AWAY)
+        self._against = (self._within, _first(setting.actions, TOWARDS))
+        self._streams = setting.streams
+
+    def choose(self, opponent: int) -> Action:
+        """Return the action to take against a robot of swarm `opponent`."""
+        if opponent == self.swarm:
+            return self._within
+        return self._against[self._streams.draws(Purpose.POLICY).random() < 0.5]
+
+    def __repr__(self) -> str:
+        return f"RandomPolicy(swarm={self.swarm})"
+
+
+def _first(actions: Sequence[Action], direction: int) -> Action:
+    for action in actions:
+        if action.direction == direction:
+            return action
+    names = [action.name for action in actions]
+    raise InputError("actions", names, f"must have one of direction {direction:+d} for this policy")
+
+
+def _fixed(setting: Setting, within: int, against: int) -> FixedPolicy:
+    return FixedPolicy(setting.swarm, _first(setting.actions, within), _first(setting.actions, against))
+
+
+class Kind(NamedTuple):
+    """A kind of policy.
+
+    Attributes
+    ----------
+    make : callable
+        Called with a `Setting` and the arguments that the user wrote.
+    arguments : tuple of str
+        The arguments that a user may write.
+    """
+
+    make: Callable[..., Policy]
+    arguments: tuple[str, ...] = ()
+
+
+_LEARNING: Final = ("reward", "rule", "otherwise")
+
+POLICIES: Final[dict[str, Kind]] = {
+    "avoid": Kind(partial(_fixed, within=AWAY, against=AWAY)),
+    "attack": Kind(partial(_fixed, within=AWAY, against=TOWARDS)),
+    "aggressive": Kind(partial(_fixed, within=TOWARDS, against=TOWARDS)),
+    "random": Kind(RandomPolicy),
+    "learner": Kind(Learner, ("about", *_LEARNING)),
+    "inter-learner": Kind(partial(Learner, about="inter"), _LEARNING),
+    "intra-learner": Kind(partial(Learner, about="intra"), _LEARNING),
+    "learned": Kind(LearnedPolicy, ("file",)),
+}
+"""Every kind of policy by its name."""
 
 _ALIASES: Final = {"mixed": "avoid+aggressive"}
 
 
-def make_policy(name: str, swarm: int, actions: Sequence[Action]) -> Policy:
+def make_policy(text: str, setting: Setting) -> Policy:
     """Build the policy of one robot.
 
     Parameters
     ----------
-    name : str
-        ``avoid``, ``attack``, ``aggressive``, or the name of an action, which is then always taken.
-    swarm : int
-        Swarm of the robot, counted from 0.
-    actions : sequence of Action
-        The actions of the game.
+    text : str
+        One of `POLICIES`, with arguments where it takes any; or the name of an action, which is then
+        always taken.
+    setting : Setting
+        What it is built for.
 
     Raises
     ------
     InputError
-        If there is no such policy, or no action of a direction that it needs.
+        If there is no such policy, or it cannot be built so.
     """
-    by_name: Mapping[str, Action] = {action.name: action for action in actions}
-    if name in by_name:
-        return FixedPolicy(swarm, by_name[name], by_name[name])
-    if name not in _FIXED:
-        known = ", ".join([*_FIXED, *_ALIASES, *by_name])
-        raise InputError("policy", name, f"must be one of {known}, or several joined by '+'")
-    within, against = (
-        next((action for action in actions if action.direction == direction), None)
-        for direction in _FIXED[name]
-    )
-    if within is None or against is None:
-        raise InputError("policy", name, f"needs actions in both directions, there are {', '.join(by_name)}")
-    return FixedPolicy(swarm, within, against)
+    for action in setting.actions:
+        if action.name == text:
+            return FixedPolicy(setting.swarm, action, action)
+    call = parse_call("policy", text)
+    if call.name in (action.name for action in setting.actions):
+        raise InputError("policy", text, "an action takes no arguments")
+    if call.name not in POLICIES:
+        known = ", ".join([*POLICIES, *_ALIASES, *(action.name for action in setting.actions)])
+        raise InputError("policy", call.name, f"must be one of {known}, or several joined by '+'")
+    kind = POLICIES[call.name]
+    require_known("policy", call, kind.arguments)
+    try:
+        return kind.make(setting, **call.arguments)
+    except InputError as error:
+        raise InputError(f"policy.{error.field}", error.value, error.allowed) from None
 
 
 def deal(policy: str, size: int) -> list[str]:
@@ -88,7 +182,7 @@ def deal(policy: str, size: int) -> list[str]:
     Parameters
     ----------
     policy : str
-        Name of a policy for all, or names joined by ``+``: equal shares in that order, the robots
+        A policy for all, or several joined by ``+``: equal shares in that order, the robots
         that are left over going to the first. ``mixed`` is ``avoid+aggressive``.
     size : int
         Robots in the swarm.
@@ -96,13 +190,23 @@ def deal(policy: str, size: int) -> list[str]:
     Returns
     -------
     list of str, length `size`
-        Name of each robot's policy.
+        Each robot's policy.
 
     Examples
     --------
     >>> deal("mixed", 5)
     ['avoid', 'avoid', 'avoid', 'aggressive', 'aggressive']
     """
-    names = _ALIASES.get(policy, policy).split("+")
+    names = parts(policy)
     share, extra = divmod(size, len(names))
     return [name for k, name in enumerate(names) for _ in range(share + (k < extra))]
+
+
+def parts(policy: str) -> list[str]:
+    """Return the policies that are dealt out under one name."""
+    return split_outside(_ALIASES.get(policy, policy), "+")
+
+
+def describe(policy: Policy) -> list[dict[str, Any]]:
+    """Return what a policy has learned, as `Learner.snapshot` does; nothing if it does not learn."""
+    return policy.snapshot() if isinstance(policy, Learner) else []

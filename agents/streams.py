@@ -24,6 +24,8 @@ class Purpose(IntEnum):
     WALL = 4
     VACANT = 5
     STATIONS = 6
+    EXPLORE = 7
+    POLICY = 8
 
 
 def stream(seed: int, robot: int, purpose: Purpose) -> Generator:
@@ -39,3 +41,25 @@ def stream(seed: int, robot: int, purpose: Purpose) -> Generator:
         The decision that the draws are for.
     """
     return Generator(PCG64(SeedSequence(seed, spawn_key=(robot, int(purpose)))))
+
+
+class Streams:
+    """The streams of one robot, each begun when it is first drawn from.
+
+    Parameters
+    ----------
+    seed, robot : int
+        As in `stream`.
+    """
+
+    def __init__(self, seed: int, robot: int) -> None:
+        self.seed = seed
+        self.robot = robot
+        self._begun: dict[Purpose, Generator] = {}
+
+    def draws(self, purpose: Purpose) -> Generator:
+        """Return the stream for a purpose, where it now is."""
+        draws = self._begun.get(purpose)
+        if draws is None:
+            draws = self._begun[purpose] = stream(self.seed, self.robot, purpose)
+        return draws

@@ -16,6 +16,8 @@ import seaborn as sns
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from agents.calls import split_outside
+
 _BOOTSTRAP_SEED = 0
 _MOST_TICKS = 16
 # Robots: seeds are drawn at most a quarter of this from their density, however far the next one is.
@@ -66,7 +68,7 @@ def curves_of(rows: pd.DataFrame) -> list[Curve]:
         of_condition = rows[rows["condition"] == condition]
         for swarm in sorted(set(of_condition["swarm"])):
             of_curve = of_condition[of_condition["swarm"] == swarm]
-            label = f"S{swarm}: {', '.join(dict.fromkeys(of_curve['policy']))}"
+            label = f"S{swarm}: {', '.join(dict.fromkeys(map(_brief, of_curve['policy'])))}"
             form = SWARM_FORMS[(swarm - 1) % len(SWARM_FORMS)]
             if len(conditions) > 1:
                 colour = CONDITION_COLOURS[index % len(CONDITION_COLOURS)]
@@ -78,6 +80,11 @@ def curves_of(rows: pd.DataFrame) -> list[Curve]:
                     form = Form(colour, "-", CONDITION_MARKERS[index % len(CONDITION_MARKERS)])
             curves.append(Curve(label, of_curve, form))
     return curves
+
+
+def _brief(policy: str) -> str:
+    """Return a policy without its arguments, which are too long for a legend."""
+    return "+".join(part.partition("(")[0] for part in split_outside(policy, "+"))
 
 
 def draw_curves(axes: Axes, curves: Sequence[Curve], quantity: str) -> None:
@@ -139,7 +146,7 @@ def page(rows: pd.DataFrame, heading: str, width: float = 7.5) -> Iterator[Figur
         sns.plotting_context("notebook", font_scale=0.9),
     ):
         figure = Figure(figsize=(width, 5.0), layout="constrained")
-        figure.suptitle(fill(heading, width=int(10 * width)))
+        figure.suptitle(fill(heading, width=int(10 * width), break_on_hyphens=False))
         yield figure
         handles, labels = figure.axes[0].get_legend_handles_labels()
         figure.legend(

@@ -115,10 +115,14 @@ def sud_over_n(runs: pd.DataFrame, scenario: str, title: str = "", swarm: int = 
     return figure
 
 
-# What a scenario shows, where it is not pucks.
+# What a scenario shows, where it is not pucks. The swarm by which conditions differ, S2, is that of the SUD.
+_OF_SUD = (
+    *("fig-6.10a", "fig-6.10b", "fig-6.12", "fig-6.14"),
+    *("fig-7.4", "fig-7.6", "fig-7.8", "fig-7.10", "fig-7.11", "fig-7.19"),
+)
 _SHOWN_BY: Mapping[str, Callable[[pd.DataFrame, str, str], Figure]] = {
     "fig-6.3": time_shares,
-    "fig-7.10": sud_over_n,
+    **dict.fromkeys(_OF_SUD, sud_over_n),
 }
 
 

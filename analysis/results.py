@@ -1,5 +1,6 @@
 """Reading the tables of a results directory (section 3.5 of the experiments)."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import pandas as pd
@@ -24,6 +25,11 @@ RUNS_NUMBERS = (
     "conflicts_inter",
     "duration",
 )
+
+POLICIES_FILE = "policies.parquet"
+
+POLICIES_TEXT = ("run", "scenario", "condition", "action")
+POLICIES_NUMBERS = ("n", "seed", "swarm", "opponent", "share", "attack_share")
 
 # What pandas and Arrow raise on damaged bytes: mostly OSError or ValueError, the others where the
 # description of the columns is damaged.
@@ -50,30 +56,56 @@ def read_runs(directory: Path) -> pd.DataFrame:
         The directory or the file is missing or cannot be read, there is no row, or a column is missing, has
         gaps or is of the wrong kind.
     """
+    return _read(directory, RUNS_FILE, RUNS_TEXT, RUNS_NUMBERS)
+
+
+def read_policies(directory: Path) -> pd.DataFrame:
+    """Read `policies.parquet`, one row for each (run, learning swarm, swarm learned about, action).
+
+    Parameters
+    ----------
+    directory : Path
+        The results directory that `kswarms run --out` wrote.
+
+    Returns
+    -------
+    pandas.DataFrame
+        At least one row; the columns `POLICIES_TEXT` (str) and `POLICIES_NUMBERS` (numbers, none missing;
+        shares from 0 to 1), and whatever other columns the file has.
+
+    Raises
+    ------
+    InputError
+        As for `read_runs`.
+    """
+    return _read(directory, POLICIES_FILE, POLICIES_TEXT, POLICIES_NUMBERS)
+
+
+def _read(directory: Path, name: str, text: Sequence[str], numbers: Sequence[str]) -> pd.DataFrame:
     if not directory.is_dir():
         raise InputError("results", str(directory), "must be a directory that `kswarms run` wrote")
-    path = directory / RUNS_FILE
+    path = directory / name
     if not path.is_file():
-        raise InputError("results", str(directory), f"must be a directory that holds {RUNS_FILE}")
+        raise InputError("results", str(directory), f"must be a directory that holds {name}")
     try:
-        runs = pd.read_parquet(path)
+        rows = pd.read_parquet(path)
     except _DAMAGE as error:
         raise InputError("results", str(path), "must be a readable Parquet file") from error
-    _check(runs, path)
-    return runs.astype(dict.fromkeys(RUNS_TEXT, str))
+    _check(rows, path, text, numbers)
+    return rows.astype(dict.fromkeys(text, str))
 
 
-def _check(runs: pd.DataFrame, path: Path) -> None:
-    missing = [name for name in (*RUNS_TEXT, *RUNS_NUMBERS) if name not in runs.columns]
+def _check(rows: pd.DataFrame, path: Path, text: Sequence[str], numbers: Sequence[str]) -> None:
+    missing = [name for name in (*text, *numbers) if name not in rows.columns]
     if missing:
         raise InputError("results", str(path), f"must have the missing columns {', '.join(missing)}")
-    if runs.empty:
+    if rows.empty:
         raise InputError("results", str(path), "must hold at least one run")
-    for name in (*RUNS_TEXT, *RUNS_NUMBERS):
-        if runs[name].isna().any():
+    for name in (*text, *numbers):
+        if rows[name].isna().any():
             raise InputError(f"{path.name} column {name}", None, "must be given in every row")
-    for name in RUNS_NUMBERS:
-        if not is_numeric_dtype(runs[name]):
+    for name in numbers:
+        if not is_numeric_dtype(rows[name]):
             raise InputError(
-                f"{path.name} column {name}", str(runs[name].dtype), "must be a column of numbers"
+                f"{path.name} column {name}", str(rows[name].dtype), "must be a column of numbers"
             )

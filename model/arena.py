@@ -141,7 +141,7 @@ def _random_stations(
 ) -> Floats:
     """Draw two stations that overlap no base, no wall and not each other."""
     draws = stream(seed, WORLD, Purpose.STATIONS)
-    limit = half - station_radius
+    limit = max(0.0, half - station_radius)
     stations: list[Floats] = []
     for _ in range(100_000):
         place = draws.uniform(-limit, limit, size=2)

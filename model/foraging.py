@@ -21,7 +21,8 @@ from agents.errors import InputError
 from agents.fleet import Fleet
 from agents.habits import Conflict, Habits
 from agents.krembot import Krembot
-from agents.policies import deal, make_policy
+from agents.policies import Setting, deal, make_policy
+from agents.streams import Streams
 from model import recording
 from model.game import Game
 from model.kernel import Kernel
@@ -87,7 +88,11 @@ class GameModel(mesa.Model):
     pucks : list of int
         Pucks deposited by each swarm.
     picked_up : int
-        Pucks picked up by all.
+        Pucks picked up by all in the measured game.
+    carried_at_start : int
+        Pucks that were carried when it began.
+    phase : {'learning', 'game'}
+        Whether the learners still learn before the measured game, which counts anew.
     ended : {'', 'time', 'pucks', 'cap'}
         Why the game is over; empty while it is not.
     sample_times : list of float
@@ -104,7 +109,7 @@ class GameModel(mesa.Model):
     def __init__(self, game: Game, seed: int = 0, record: str = "", sample_period: float = 10.0) -> None:
         if not isinstance(seed, int | np.integer) or seed < 0:
             raise InputError("seed", seed, "must be a whole number ≥ 0")
-        if not 0 < sample_period < math.inf:
+        if not isinstance(sample_period, float | int | np.number) or not 0 < sample_period < math.inf:
             raise InputError("sample_period", sample_period, "must be a number of seconds > 0")
         recorded = recording.parse_record(record)
         super().__init__(seed=int(seed))
@@ -119,13 +124,20 @@ class GameModel(mesa.Model):
         self.conflict_log: list[Conflict] | None = [] if "conflicts" in recorded else None
         self.pucks = [0] * len(game.swarms)
         self.picked_up = 0
+        self.carried_at_start = 0
         self.ended = ""
         self._populate()
         self._swarm_of: list[int] = self.fleet.swarm.tolist()
         self._kernel = Kernel(game, self.arena, self.fleet)
         self._due = 0
         """Events of the kernel that the robots have not decided on yet."""
-        self._end = self.habits.periods(game.duration)
+        self._start = math.ceil(game.learning / game.parameters.period - 1e-9)
+        """When the measured game begins (periods)."""
+        self._end = self._start + self.habits.periods(game.duration)
+        self.phase = "game"
+        if self._start > 0:
+            self.phase = "learning"
+            Instant(self.env, _BEFORE_TIMEOUTS, self._begin_game).happen_in(self._start)
         Instant(self.env, _BEFORE_TIMEOUTS, self._time_is_up).happen_in(self._end)
         self._motion = Instant(self.env, _AFTER_TIMEOUTS, self._move)
         self._motion.happen_in(0)
@@ -137,8 +149,13 @@ class GameModel(mesa.Model):
 
     @property
     def time(self) -> float:
-        """Seconds played."""
-        return float(self.env.now * self.game.parameters.period)
+        """Seconds since the beginning, that of learning included."""
+        return self.habits.seconds(cast(int, self.env.now))
+
+    @property
+    def duration(self) -> float:
+        """Seconds of the measured game so far."""
+        return self.habits.seconds(max(0, cast(int, self.env.now) - self._start))
 
     @property
     def supply(self) -> list[int]:
@@ -209,13 +226,27 @@ class GameModel(mesa.Model):
             strides = (parameters.period * body.top_speed * d for d in (swarm.drive, swarm.drive_action))
             stride_program, stride_action = strides
             self.members.append([])
-            for name in deal(swarm.policy, swarm.size):
-                policy = make_policy(name, k, game.action_set)
-                robot = Krembot(self, index, k, policy, name, stride_program, stride_action, len(game.swarms))
+            for place, name in enumerate(deal(swarm.policy, swarm.size)):
+                streams = Streams(self.seed, index)
+                policy = make_policy(name, Setting(k, len(game.swarms), game.action_set, streams, place))
+                robot = Krembot(
+                    *(self, index, k, policy, name, streams),
+                    *(stride_program, stride_action, len(game.swarms)),
+                )
                 self.members[k].append(robot)
                 index += 1
         self.robots = [robot for members in self.members for robot in members]
         self.fleet.positions[:] = positions
+
+    def _begin_game(self, _: Event) -> None:
+        """End the learning: policies are fixed, and all counts begin anew in the world as it is."""
+        for robot in self.robots:
+            robot.restart(cast(int, self.env.now))
+        self._flush_conflicts()
+        self.phase = "game"
+        self.pucks = [0] * len(self.pucks)
+        self.picked_up = 0
+        self.carried_at_start = sum(robot.carrying for robot in self.robots)
 
     def _time_is_up(self, _: Event) -> None:
         self._finish("time" if self.game.puck_limit is None else "cap")
@@ -224,13 +255,16 @@ class GameModel(mesa.Model):
         """End the game, and with it the run of the clock."""
         self.ended = why
         for robot in self.robots:
-            robot.close(cast(int, self.env.now))
+            robot.close(cast(int, self.env.now), learn=False)
         raise StopSimulation(None)
 
-    def _collect(self) -> None:
+    def _flush_conflicts(self) -> None:
         if self.conflict_log:
             recording.add_conflicts(self, self.conflict_log)
             self.conflict_log.clear()
+
+    def _collect(self) -> None:
+        self._flush_conflicts()
         self.sample_times.append(self.time)
         self.datacollector.collect(self)
 
@@ -265,7 +299,8 @@ class GameModel(mesa.Model):
             elif kind == DEPOSIT:
                 robot.deposit()
                 self.pucks[robot.swarm] += 1
-                if self.game.puck_limit is not None and sum(self.pucks) >= self.game.puck_limit:
+                limit = self.game.puck_limit
+                if limit is not None and sum(self.pucks) >= limit and self.phase == "game":
                     self._finish("pucks")
             else:
                 robot.begin_wall_turn()

@@ -2,20 +2,21 @@
 
 import math
 from collections.abc import Sequence
-from typing import Self
+from typing import Final, Self
 
 from pydantic import Field, model_validator
 
 from agents.actions import Action
 from agents.body import BODIES, Body
 from agents.errors import InputError
-from agents.policies import deal, make_policy
+from agents.policies import Setting, make_policy, parts
+from agents.streams import Streams
 from agents.validation import Checked
 from model.arena import LAYOUTS, Arena, build_arena
 from model.parameters import PRESETS, Parameters
 
-SMALLEST_PART = 0.5
-"""Part of its radius that a robot may at most cover in a period, so that contacts are not jumped over."""
+LONGEST_STEP: Final = 0.8
+"""What a robot may cover in a period, as a part of its radius: two that meet must not pass each other."""
 
 
 class Swarm(Checked):
@@ -54,8 +55,10 @@ class Game(Checked):
         What a robot can do at a conflict; empty for flight and fight with the parameters' durations.
     side : float
         Side of the arena (m); the layouts, given for 2 m, scale with it.
+    learning : float
+        Time for which learners learn before the measured game, in the same world (s).
     duration : float
-        Length of the game, or the longest it may take if there is a puck limit (s).
+        Length of the measured game, or the longest it may take if there is a puck limit (s).
     puck_limit : int, optional
         The game ends with this puck deposited, over all swarms.
     supply : int, optional
@@ -73,6 +76,7 @@ class Game(Checked):
     body: str = "krembot-sim"
     actions: tuple[Action, ...] = ()
     side: float = Field(2.0, gt=0)
+    learning: float = Field(0.0, ge=0)
     duration: float = Field(600.0, gt=0)
     puck_limit: int | None = Field(None, ge=1)
     supply: int | None = Field(None, ge=1)
@@ -87,15 +91,22 @@ class Game(Checked):
         if len(set(names)) < len(names):
             raise InputError("actions", names, "must have different names")
         for k, swarm in enumerate(self.swarms):
-            for name in set(deal(swarm.policy, len(swarm.policy.split("+")) + 1)):
-                make_policy(name, k, self.action_set)
+            setting = Setting(k, len(self.swarms), self.action_set, Streams(0, 0))
+            for text in parts(swarm.policy):
+                make_policy(text, setting)
         fastest = max(max(swarm.drive, swarm.drive_action) for swarm in self.swarms)
         step = self.parameters.period * self.body_preset.top_speed * fastest
-        if step > SMALLEST_PART * self.body_preset.radius:
+        if step > LONGEST_STEP * self.body_preset.radius:
             raise InputError(
                 "period",
                 self.parameters.period,
-                "must be so short that a robot covers half its radius at most",
+                f"must be so short that a robot covers at most {LONGEST_STEP} of its radius",
+            )
+        reach = self.body_preset.radius + self.body_preset.sensing_scale * self.parameters.wall_distance
+        if reach > self.side / 2:
+            # Else a robot could have walls ahead in every direction, and never find where to turn.
+            raise InputError(
+                "wall_distance", self.parameters.wall_distance, "must be less than half the arena"
             )
         self._check_room()
         return self

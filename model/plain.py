@@ -1,5 +1,8 @@
 """The same game from plain values and names, as `mesa.batch_run` passes them."""
 
+import numpy as np
+
+from agents.calls import split_outside
 from agents.errors import InputError
 from model.foraging import GameModel
 from model.game import Game, Swarm, apportion
@@ -24,8 +27,8 @@ class ForagingModel(GameModel):
         As in `model.game.Game`.
     parameters : str
         As in `model.parameters.parse_parameters`.
-    duration, side : float
-        As in `model.game.Game` (s, m).
+    duration, learning, side : float
+        As in `model.game.Game` (s, s, m).
     puck_limit, supply : int
         As in `model.game.Game`; 0 for none.
     seed, record, sample_period
@@ -50,6 +53,7 @@ class ForagingModel(GameModel):
         side: float = 2.0,
         puck_limit: int = 0,
         supply: int = 0,
+        learning: float = 0.0,
         seed: int = 0,
         record: str = "model",
         sample_period: float = 10.0,
@@ -63,12 +67,13 @@ class ForagingModel(GameModel):
             side=side,
             puck_limit=puck_limit or None,
             supply=supply or None,
+            learning=learning,
         )
         super().__init__(game, seed=seed, record=record, sample_period=sample_period)
 
 
 def _swarms(n: int, policies: str, shares: str, drives: str) -> tuple[Swarm, ...]:
-    names = [name.strip() for name in policies.split(",")]
+    names = split_outside(policies, ",")
     parts = _numbers("shares", shares, ":", int) if shares else [1] * len(names)
     if len(parts) != len(names) or min(parts) < 1:
         raise InputError("shares", shares, f"must be {len(names)} whole numbers ≥ 1 separated by ':'")
@@ -77,9 +82,9 @@ def _swarms(n: int, policies: str, shares: str, drives: str) -> tuple[Swarm, ...
     )
     if len(pairs) != len(names):
         raise InputError("drives", drives, f"must be {len(names)} numbers separated by ','")
-    if not isinstance(n, int) or n < len(names):
+    if not isinstance(n, int | np.integer) or n < len(names):
         raise InputError("n", n, f"must be a whole number ≥ {len(names)}, one robot for each swarm")
-    sizes = apportion(n, parts)
+    sizes = apportion(int(n), parts)
     return tuple(
         Swarm(policy=name, size=size, drive=drive, drive_action=drive_action or 0.6)
         for name, size, (drive, _, drive_action) in zip(names, sizes, pairs, strict=True)

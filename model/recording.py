@@ -1,12 +1,17 @@
 """What is kept of a game: Mesa's DataCollector, the tables of records, the row of results (section 3.5)."""
 
 from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from mesa import DataCollector
 
+from agents.actions import TOWARDS
 from agents.errors import InputError
 from agents.habits import Conflict
+from agents.learned import save
+from agents.learner import Learner
+from agents.policies import describe
 
 if TYPE_CHECKING:
     from model.foraging import GameModel
@@ -85,28 +90,29 @@ def _share_of_action(model: "GameModel", swarm: int) -> float:
 
 def add_conflicts(model: "GameModel", conflicts: Iterable[Conflict]) -> None:
     """Write closed conflicts to the DataCollector's table, times in seconds, swarms counted from 1."""
-    period = model.game.parameters.period
+    seconds = model.habits.seconds
     for c in conflicts:
         row = (
-            *("game", c.robot, model.robots[c.robot].swarm + 1),
+            *(model.phase, c.robot, model.robots[c.robot].swarm + 1),
             *(c.opponent, model.robots[c.opponent].swarm + 1),
-            *(c.start * period, c.x, c.y, c.action.name, c.t_a * period, c.t_p * period, c.active),
-            *(float("nan"), float("nan")),
+            *(seconds(c.start), c.x, c.y, c.action.name, seconds(c.t_a), seconds(c.t_p), c.active),
+            *(c.reward, c.value),
         )
         model.datacollector.add_table_row("conflicts", dict(zip(_CONFLICT_COLUMNS, row, strict=True)))
 
 
 def robots_table(model: "GameModel") -> Table:
     """Return one row for each robot, times in seconds."""
-    period = model.game.parameters.period
+    seconds = model.habits.seconds
     times = [robot.times() for robot in model.robots]
     return {
         "robot": [robot.index for robot in model.robots],
         "swarm": [robot.swarm + 1 for robot in model.robots],
         "policy": [robot.policy_name for robot in model.robots],
         "pucks": [robot.pucks for robot in model.robots],
-        "t_a": [sum(t_a) * period for t_a, _ in times],
-        "t_p": [t_p * period for _, t_p in times],
+        "t_a": [seconds(sum(t_a)) for t_a, _ in times],
+        "t_p": [seconds(t_p) for _, t_p in times],
+        "arms": [describe(robot.policy) for robot in model.robots],
     }
 
 
@@ -126,7 +132,7 @@ def trajectory_table(model: "GameModel") -> Table:
 
 def result_rows(model: "GameModel") -> list[dict[str, Any]]:
     """Return one row for each swarm with the columns of ``runs.parquet`` that the game knows of."""
-    period = model.game.parameters.period
+    seconds = model.habits.seconds
     rows = []
     for k, swarm in enumerate(model.game.swarms):
         t_a, t_p = model.times(k)
@@ -138,13 +144,56 @@ def result_rows(model: "GameModel") -> list[dict[str, Any]]:
                 "policy": swarm.policy,
                 "pucks": model.pucks[k],
                 "sud": swarm_utility_difference(model.pucks, k),
-                "t_a_intra": t_a[k] * period,
-                "t_a_inter": (sum(t_a) - t_a[k]) * period,
-                "t_p": t_p * period,
+                "t_a_intra": seconds(t_a[k]),
+                "t_a_inter": seconds(sum(t_a) - t_a[k]),
+                "t_p": seconds(t_p),
                 "conflicts_intra": conflicts[k],
                 "conflicts_inter": sum(conflicts) - conflicts[k],
-                "duration": model.time,
+                "duration": model.duration,
                 "ended": model.ended,
             }
         )
     return rows
+
+
+def policy_rows(model: "GameModel") -> list[dict[str, Any]]:
+    """Return, for each learning swarm, swarm learned about and action, the share of robots that chose it.
+
+    The columns of ``policies.parquet`` from ``swarm`` on.
+    """
+    rows = []
+    for k, members in enumerate(model.members):
+        learners = [robot.policy for robot in members if isinstance(robot.policy, Learner)]
+        for opponent in sorted({m for learner in learners for m in learner.bandits}):
+            learned = [learner.learned(opponent) for learner in learners if opponent in learner.bandits]
+            shares = {
+                a.name: sum(b.name == a.name for b in learned) / len(learned) for a in model.game.action_set
+            }
+            attack_share = sum(action.direction == TOWARDS for action in learned) / len(learned)
+            rows += [
+                {
+                    "swarm": k + 1,
+                    "opponent": opponent + 1,
+                    "action": name,
+                    "share": share,
+                    "attack_share": attack_share,
+                }
+                for name, share in shares.items()
+            ]
+    return rows
+
+
+def save_policies(model: "GameModel", swarm: int, path: Path) -> None:
+    """Write what the robots of a swarm (from 1) have learned, to be played as ``learned(file="…")``.
+
+    Raises
+    ------
+    InputError
+        If it is not a swarm of learners.
+    OSError
+        If the file cannot be written; then nothing is.
+    """
+    learned = [describe(robot.policy) for robot in model.members[swarm - 1]]
+    if not all(learned):
+        raise InputError("swarm", swarm, "must be a swarm of learners")
+    save(path, swarm, learned)

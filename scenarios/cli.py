@@ -3,12 +3,11 @@
 What takes long to import is imported by the command that needs it.
 """
 
-import difflib
 import os
 import shlex
 import sys
 import traceback
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import Annotated, Final
@@ -16,12 +15,16 @@ from typing import Annotated, Final
 import typer
 
 from agents.errors import InputError
-from scenarios.catalogue import CATALOGUE
-from scenarios.description import Scenario
+from scenarios.catalogue import CATALOGUE, TABLES
+from scenarios.choice import chosen, integers, planned, words
+from scenarios.description import Scenario, toml_of
 from scenarios.runner import RECORDS, RunError, play_all
 from scenarios.runs import Run, expand, package_version
 
 INTERRUPTED: Final = 130
+
+# Of a printed table: as wide as it is, for rich would break the cells in a pipe's 80 columns.
+_ANY_WIDTH: Final = 1000
 
 app = typer.Typer(
     add_completion=False,
@@ -90,21 +93,28 @@ def _without_command(
 
 @app.command("list", epilog="Example: kswarms list")
 def list_scenarios() -> None:
-    """List the scenarios of the catalogue."""
-    width = max(map(len, CATALOGUE))
-    for scenario in CATALOGUE.values():
-        typer.echo(f"{scenario.id:<{width}}  {scenario.title}")
+    """List the scenarios of the catalogue, and the tables made of some."""
+    titles = {name: scenario.title for name, scenario in CATALOGUE.items()}
+    titles |= {name: table.title for name, table in TABLES.items()}
+    width = max(map(len, titles))
+    for name, title in titles.items():
+        typer.echo(f"{name:<{width}}  {title}")
 
 
 @app.command(epilog="Example: kswarms show fig-6.1c")
-def show(scenario_id: Annotated[str, typer.Argument(metavar="ID", help="A scenario of the list.")]) -> None:
-    """Print a scenario as TOML."""
-    typer.echo(_scenario(scenario_id).to_toml(), nl=False)
+def show(
+    wanted: Annotated[str, typer.Argument(metavar="ID", help="A scenario or table of the list.")],
+) -> None:
+    """Print a scenario as TOML, or those that a table is made of."""
+    scenarios = chosen([wanted])
+    typer.echo(toml_of(scenarios) if wanted in TABLES else scenarios[0].to_toml(), nl=False)
 
 
 @app.command(epilog="Example: kswarms run fig-6.1a fig-6.1c --densities 6,30,50 --seeds 5")
 def run(
-    ids: Annotated[list[str] | None, typer.Argument(metavar="ID...", help="Scenarios of the list.")] = None,
+    ids: Annotated[
+        list[str] | None, typer.Argument(metavar="ID...", help="Scenarios or tables of the list.")
+    ] = None,
     everything: Annotated[
         bool, typer.Option("--all", help="All scenarios, each with those --densities that suit it.")
     ] = False,
@@ -123,13 +133,20 @@ def run(
     no_figures: Annotated[bool, typer.Option("--no-figures", help="Write the tables alone.")] = False,
 ) -> None:
     """Play scenarios, write tables of their results and draw a figure of each."""
-    scenarios = _plan(_choose(ids or [], everything), _integers("densities", densities), seeds, everything)
+    ids = ids or []
+    if bool(ids) == everything:
+        raise InputError("id", " ".join(ids), "must be one or more of `kswarms list`, or none with --all")
+    scenarios, left_out = planned(
+        chosen(ids or CATALOGUE), integers("densities", densities), seeds, suitable_only=everything
+    )
+    if left_out:
+        typer.echo(f"kswarms: none of the densities suits {', '.join(left_out)}: left out", err=True)
     if first_seed < 0:
         raise InputError("first_seed", first_seed, "must be at least 0")
     jobs = jobs if jobs is not None else os.cpu_count() or 1
     if jobs < 1:
         raise InputError("jobs", jobs, "must be at least 1")
-    names = _words(record)
+    names = words(record)
     for name in names:
         if name not in RECORDS:
             raise InputError("record", name, f"must be among {', '.join(RECORDS)}")
@@ -142,7 +159,28 @@ def run(
         titles = {scenario.id: scenario.title for scenario in scenarios}
         for picture in draw(out, list(titles), titles):
             typer.echo(f"figure: {picture}")
+    for table_id in dict.fromkeys(ids):
+        if table_id in TABLES:
+            _print_table(table_id, out)
     typer.echo(f"next:   {_next_command(scenarios, out)}")
+
+
+def _print_table(table_id: str, out: Path) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    from analysis.results import read_policies
+    from analysis.tables import learned, printed
+
+    title, scenarios = TABLES[table_id]
+    text = printed(learned(read_policies(out), scenarios))
+    table = Table()
+    for heading in text.header:
+        table.add_column(heading, justify="right")
+    for cells in text.rows:
+        table.add_row(*cells)
+    console = Console(width=_ANY_WIDTH, highlight=False)
+    console.print(f"\n{table_id}: {title}", table, text.caption, sep="\n")
 
 
 def _play(runs: Sequence[Run], jobs: int, record: str, out: Path) -> list[Path]:
@@ -155,55 +193,6 @@ def _play(runs: Sequence[Run], jobs: int, record: str, out: Path) -> list[Path]:
     with closing(play_all(runs, jobs, record)) as played:
         progress = track(played, "playing", total=len(runs), console=Console(stderr=True))
         return write(out, [tabulate(run, outcome) for run, outcome in progress])
-
-
-def _scenario(scenario_id: str) -> Scenario:
-    if scenario_id not in CATALOGUE:
-        near = difflib.get_close_matches(scenario_id, CATALOGUE, cutoff=0.5)
-        hint = f"did you mean {' or '.join(near)}?" if near else "see `kswarms list`"
-        raise InputError("id", scenario_id, f"must be a scenario of the list; {hint}")
-    return CATALOGUE[scenario_id]
-
-
-def _choose(ids: Sequence[str], everything: bool) -> list[Scenario]:
-    if bool(ids) == everything:
-        raise InputError("id", " ".join(ids), "must be one or more of `kswarms list`, or none with --all")
-    return [_scenario(scenario_id) for scenario_id in dict.fromkeys(ids or CATALOGUE)]
-
-
-def _plan(
-    scenarios: Iterable[Scenario], densities: tuple[int, ...], seeds: int | None, suitable_only: bool
-) -> list[Scenario]:
-    """Return the scenarios with the densities and the number of seeds asked for in place of their own."""
-    planned, left_out = [], []
-    for scenario in scenarios:
-        wanted = tuple(n for n in densities if not suitable_only or scenario.allows(n))
-        if densities and not wanted:
-            left_out.append(scenario.id)
-            continue
-        asked = ({"densities": wanted} if wanted else {}) | ({"seeds": seeds} if seeds is not None else {})
-        try:
-            planned.append(scenario.replace(**asked))
-        except InputError as error:
-            raise InputError(error.field, error.value, f"{error.allowed} ({scenario.id})") from None
-    if not planned:
-        raise InputError("densities", ",".join(map(str, densities)), "must suit some scenario")
-    if left_out:
-        typer.echo(f"kswarms: none of the densities suits {', '.join(left_out)}: left out", err=True)
-    return planned
-
-
-def _words(text: str) -> list[str]:
-    return list(dict.fromkeys(word.strip() for word in text.split(","))) if text else []
-
-
-def _integers(field: str, text: str | None) -> tuple[int, ...]:
-    if text is None:
-        return ()
-    try:
-        return tuple(sorted({int(word) for word in text.split(",")}))
-    except ValueError:
-        raise InputError(field, text, "must be integers separated by commas, as 6,30,50") from None
 
 
 def _next_command(played: Sequence[Scenario], out: Path) -> str:

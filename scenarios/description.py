@@ -5,7 +5,8 @@ are frozen and checked when they are made, so that a scenario that exists can be
 """
 
 import math
-from typing import Final, Self
+from collections.abc import Iterable
+from typing import Any, Final, Self
 
 from pydantic import Field, model_validator
 
@@ -28,7 +29,8 @@ class SwarmRule(Checked):
     Attributes
     ----------
     policy : str
-        Name of a policy or of an action, or several joined by ``+``.
+        A policy with its arguments, as ``inter-learner(rule='greedy')``, the name of an action, or several
+        of these joined by ``+``.
     share : int
         The swarm's part of all robots, in proportion to the other swarms' shares.
     drive, drive_action : float
@@ -56,6 +58,8 @@ class Condition(Checked):
         Name of a preset and what differs from it, as ``"fitted, period=0.05"``.
     actions : tuple of Action
         What robots can do; empty for flight and fight as the parameters have them.
+    learning : float
+        Time for which learners learn before the game (s); 0 for swarms that do not learn.
     duration : float
         Length of the game (s), the limit if it is played for pucks.
     puck_limit, supply : int, optional
@@ -71,6 +75,7 @@ class Condition(Checked):
     body: str = "krembot-sim"
     parameters: str = "fitted"
     actions: tuple[Action, ...] = ()
+    learning: float = 0.0
     duration: float = 600.0
     puck_limit: int | None = None
     supply: int | None = None
@@ -110,6 +115,7 @@ class Condition(Checked):
             parameters=parse_parameters(self.parameters),
             body=self.body,
             actions=self.actions,
+            learning=self.learning,
             duration=self.duration,
             puck_limit=self.puck_limit,
             supply=self.supply,
@@ -146,7 +152,8 @@ class Scenario(Checked):
             raise InputError("conditions", names, "must have names that differ")
         for condition in self.conditions:
             for n in self.densities:
-                condition.game(n)
+                condition.sizes(n)
+            condition.game(max(self.densities))  # fewer robots fit where more do
         return self
 
     def game(self, condition: str, n: int) -> Game:
@@ -173,6 +180,18 @@ class Scenario(Checked):
 
     def to_toml(self) -> str:
         """Return the scenario as TOML, from which ``Scenario(**tomllib.loads(text))`` makes it again."""
-        import tomlkit  # here: nothing but `kswarms show` needs it
+        return _toml(self._plain())
 
-        return tomlkit.dumps(self.model_dump(mode="json", exclude_none=True))
+    def _plain(self) -> dict[str, Any]:
+        return self.model_dump(mode="json", exclude_none=True)
+
+
+def toml_of(scenarios: Iterable[Scenario]) -> str:
+    """Return several scenarios as one TOML document, each an element of its array ``scenarios``."""
+    return _toml({"scenarios": [scenario._plain() for scenario in scenarios]})
+
+
+def _toml(content: dict[str, Any]) -> str:
+    import tomlkit  # here: nothing but `kswarms show` needs it
+
+    return tomlkit.dumps(content)

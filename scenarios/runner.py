@@ -31,11 +31,14 @@ class Outcome:
     ----------
     swarms : list of dict
         One row of results for each swarm.
+    policies : list of dict
+        What the swarms learned: one row for each swarm that learns, swarm learned about and action.
     records : dict of str to dict of str to list
         The recorded tables asked for: columns by name.
     """
 
     swarms: list[dict[str, Any]]
+    policies: list[dict[str, Any]]
     records: dict[str, dict[str, list[Any]]]
 
 
@@ -58,12 +61,13 @@ def play(run: Run, record: str = "") -> Outcome:
     from mesa import Agent
 
     from model.foraging import GameModel
+    from model.recording import policy_rows
 
     model = None
     try:
         model = GameModel(run.game, seed=run.seed, record=record)
         model.play()
-        return Outcome(model.results(), model.tables())
+        return Outcome(model.results(), policy_rows(model), model.tables())
     except Exception as error:
         raise RunError(f"{_name(run)} failed: {type(error).__name__}: {error}") from error
     finally:

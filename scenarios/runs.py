@@ -6,7 +6,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
+from pathlib import Path
 
+from agents.calls import parse_call
+from agents.policies import parts
 from model.game import Game
 from scenarios.description import Scenario
 
@@ -39,8 +42,8 @@ class Run:
 
     @property
     def effort(self) -> float:
-        """Robot-periods at most, by which long runs are told from short ones."""
-        return self.n * self.game.duration / self.game.parameters.period
+        """Robot-periods at most, those of learning included, by which long runs are told from short ones."""
+        return self.n * (self.game.learning + self.game.duration) / self.game.parameters.period
 
 
 @cache
@@ -52,12 +55,24 @@ def package_version() -> str:
 def digest(game: Game, seed: int) -> str:
     """Return the name of what is simulated: 16 hexadecimal digits of a SHA-256.
 
-    It covers the game, the seed and the version of the package, so two runs of one name have the
-    same results. 64 bits keep a study of a million runs clear of collisions (odds of 3 in 10⁸).
+    It covers the game, the learned policies that it loads, the seed and the version of the package, so
+    two runs of one name have the same results. 64 bits keep a study of a million runs clear of
+    collisions (odds of 3 in 10⁸).
     """
-    content = {"game": game.model_dump(mode="json"), "seed": seed, "version": package_version()}
+    content = {
+        "game": game.model_dump(mode="json"),
+        "files": [hashlib.sha256(file.read_bytes()).hexdigest() for file in _loaded(game)],
+        "seed": seed,
+        "version": package_version(),
+    }
     text = json.dumps(content, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _loaded(game: Game) -> list[Path]:
+    """Return the files whose learned policies play in a game."""
+    calls = [parse_call("policy", text) for swarm in game.swarms for text in parts(swarm.policy)]
+    return [Path(call.arguments["file"]) for call in calls if call.name == "learned"]
 
 
 def expand(scenarios: Iterable[Scenario], first_seed: int = 0) -> list[Run]:

@@ -1,6 +1,6 @@
 """The tables of results: Parquet files by the contract of section 3.5, written whole or not at all."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory, TemporaryFile
 from typing import Final
@@ -10,7 +10,7 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from agents.errors import InputError
-from scenarios.runner import RECORDS, Outcome
+from scenarios.runner import Outcome
 from scenarios.runs import Run
 
 _TEXT, _WHOLE, _REAL, _YES_NO = pa.string(), pa.int64(), pa.float64(), pa.bool_()
@@ -38,6 +38,23 @@ RUNS: Final = pa.schema(
 )
 """Columns of ``runs.parquet``: one row for each (run, swarm) and each curve the run belongs to."""
 
+POLICIES: Final = pa.schema(
+    {
+        "run": _TEXT,
+        "scenario": _TEXT,
+        "condition": _TEXT,
+        "n": _WHOLE,
+        "seed": _WHOLE,
+        "swarm": _WHOLE,
+        "opponent": _WHOLE,
+        "action": _TEXT,
+        "share": _REAL,
+        "attack_share": _REAL,
+    }
+)
+"""Columns of ``policies.parquet``: one row for each (run, learning swarm, swarm learned about, action), and
+each curve the run belongs to."""
+
 CONFLICTS: Final = pa.schema(
     {
         "run": _TEXT,
@@ -59,6 +76,10 @@ CONFLICTS: Final = pa.schema(
 )
 """Columns of ``conflicts.parquet``: one row for each conflict that a robot began."""
 
+_ARM: Final = pa.struct(
+    {"opponent": _WHOLE, "action": _TEXT, "reward": _REAL, "time": _REAL, "count": _REAL, "q": _REAL}
+)
+
 ROBOTS: Final = pa.schema(
     {
         "run": _TEXT,
@@ -68,9 +89,10 @@ ROBOTS: Final = pa.schema(
         "pucks": _WHOLE,
         "t_a": _REAL,
         "t_p": _REAL,
+        "arms": pa.list_(_ARM),
     }
 )
-"""Columns of ``robots.parquet``: one row for each robot at the end of its game."""
+"""Columns of ``robots.parquet``: one row for each robot at the end of its game, with what it learned."""
 
 TRAJECTORY: Final = pa.schema(
     {
@@ -86,25 +108,39 @@ TRAJECTORY: Final = pa.schema(
 )
 """Columns of ``trajectory.parquet``: one row for each robot and sample."""
 
-SCHEMAS: Final = {"runs": RUNS, "conflicts": CONFLICTS, "robots": ROBOTS, "trajectory": TRAJECTORY}
+SCHEMAS: Final = {
+    "runs": RUNS,
+    "policies": POLICIES,
+    "conflicts": CONFLICTS,
+    "robots": ROBOTS,
+    "trajectory": TRAJECTORY,
+}
 """Columns of every table by its name, which is the name of its file."""
 
+Row = Mapping[str, object]
+
 _CURVE_POINT: Final = ("scenario", "condition", "n", "seed")
-_ORDER: Final = [(column, "ascending") for column in (*_CURVE_POINT, "swarm")]
+_ORDER: Final = {"runs": (*_CURVE_POINT, "swarm"), "policies": (*_CURVE_POINT, "swarm", "opponent")}
 
 
 def tabulate(run: Run, outcome: Outcome) -> dict[str, pa.Table]:
-    """Return what came out of a run as tables: ``runs`` and what was recorded."""
-    named = [
-        {"run": run.digest, "scenario": scenario, "condition": condition, "n": run.n, "seed": run.seed} | row
+    """Return what came out of a run as tables: ``runs``, ``policies`` if a swarm learned, and the records."""
+    labels = [
+        {"run": run.digest, "scenario": scenario, "condition": condition, "n": run.n, "seed": run.seed}
         for scenario, condition in run.labels
-        for row in outcome.swarms
     ]
-    tables = {"runs": {name: [row[name] for row in named] for name in RUNS.names}}
+    tables = {"runs": _labelled(RUNS, labels, outcome.swarms)}
+    if outcome.policies:
+        tables["policies"] = _labelled(POLICIES, labels, outcome.policies)
     for name, columns in outcome.records.items():
         length = len(next(iter(columns.values())))
         tables[name] = {"run": [run.digest] * length} | columns
     return {name: pa.table(columns, schema=SCHEMAS[name]) for name, columns in tables.items()}
+
+
+def _labelled(schema: pa.Schema, labels: Iterable[Row], rows: Sequence[Row]) -> dict[str, list[object]]:
+    named = [{**label, **row} for label in labels for row in rows]
+    return {column: [row[column] for row in named] for column in schema.names}
 
 
 def prepare(directory: Path) -> None:
@@ -156,25 +192,23 @@ def write(directory: Path, parts: Iterable[Mapping[str, pa.Table]]) -> list[Path
     OSError
         If writing fails; then every file is as it was.
     """
-    new: dict[str, list[pa.Table]] = {"runs": []}
-    for part in parts:
-        for name, table in part.items():
-            new.setdefault(name, []).append(table)
-
-    fresh = pa.concat_tables([RUNS.empty_table(), *new.pop("runs")])
-    earlier = _read(directory, "runs")
-    replaced = set(_curve_points(fresh))
-    kept = earlier.filter(pa.array([point not in replaced for point in _curve_points(earlier)], pa.bool_()))
-    tables = {"runs": pa.concat_tables([kept, fresh]).sort_by(_ORDER)}
-
-    for name in RECORDS:
-        added = pa.concat_tables([SCHEMAS[name].empty_table(), *new.get(name, [])])
+    parts = list(parts)
+    replaced = {point for part in parts for point in _curve_points(part["runs"])}
+    present = {"runs", *(name for part in parts for name in part)}
+    tables: dict[str, pa.Table] = {}
+    for name, schema in SCHEMAS.items():
         earlier = _read(directory, name)
-        earlier = earlier.filter(pc.invert(pc.is_in(earlier["run"], added["run"].combine_chunks())))
-        table = pa.concat_tables([earlier, added])
-        table = table.filter(pc.is_in(table["run"], tables["runs"]["run"].combine_chunks()))
-        if name in new or len(earlier):
-            tables[name] = table.sort_by("run")  # stable: a run's rows keep their order
+        added = pa.concat_tables([schema.empty_table(), *(part[name] for part in parts if name in part)])
+        if name in _ORDER:
+            again = pa.array([point in replaced for point in _curve_points(earlier)], pa.bool_())
+        else:
+            again = _of_runs(earlier, added)
+        table = pa.concat_tables([earlier.filter(pc.invert(again)), added])
+        if name != "runs":
+            table = table.filter(_of_runs(table, tables["runs"]))
+        if name in present or len(earlier):
+            # Stable: rows of one key, as the actions of a policy, keep their order.
+            tables[name] = table.sort_by([(column, "ascending") for column in _ORDER.get(name, ("run",))])
 
     with TemporaryDirectory(dir=directory, prefix=".unfinished-") as unfinished:
         for name, table in tables.items():
@@ -191,6 +225,11 @@ def _path(directory: Path, name: str) -> Path:
 def _read(directory: Path, name: str) -> pa.Table:
     path = _path(directory, name)
     return pq.read_table(path, schema=SCHEMAS[name]) if path.exists() else SCHEMAS[name].empty_table()
+
+
+def _of_runs(table: pa.Table, runs: pa.Table) -> pa.BooleanArray:
+    """Tell for each row of a table whether its run is among those of another."""
+    return pc.is_in(table["run"], runs["run"].combine_chunks())
 
 
 def _curve_points(table: pa.Table) -> Iterable[tuple[object, ...]]:

@@ -38,6 +38,29 @@ def table_6_2() -> pd.DataFrame:
     return _table("table-6.2.csv")
 
 
+def learned_percentages() -> pd.DataFrame:
+    """Tables 6.1 and 6.2 in one form: what the robots of the learning swarm learned, in percent.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Forty rows. `scenario` (str): the figure that the table is about; `learned` (str): ``attack`` the
+        other swarm, or ``flight within`` the own; `n` (int64): robots in all; `published` (float64): percent
+        of the learning swarm's robots.
+    """
+    attack, within = "attack", "flight within"
+    columns = [
+        (table_6_1(), "fig_6_4a_attack_pct", "fig-6.4a", attack),
+        (table_6_1(), "fig_6_4b_attack_pct", "fig-6.4b", attack),
+        (table_6_2(), "inter_attack_pct", "fig-6.8", attack),
+        (table_6_2(), "intra_avoid_pct", "fig-6.8", within),
+    ]
+    return pd.concat(
+        pd.DataFrame({"scenario": scenario, "learned": learned, "n": table["n"], "published": table[column]})
+        for table, column, scenario, learned in columns
+    )
+
+
 def argos_fixed_policies() -> pd.DataFrame:
     """Games of two swarms of fixed policies in ARGoS 3, one row for each game.
 

@@ -6,13 +6,14 @@ import subprocess
 import sys
 import time
 import tomllib
+from operator import itemgetter
 from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
 
 from scenarios import cli
-from scenarios.catalogue import CATALOGUE
+from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.cli import invoke
 from scenarios.description import Scenario
 from scenarios.runner import RunError
@@ -28,11 +29,12 @@ def _in_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.chdir(tmp_path)
 
 
-def test_list_names_every_scenario(capsys: pytest.CaptureFixture[str]) -> None:
+def test_list_names_every_scenario_and_table(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["list"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines] == list(CATALOGUE)
-    assert all(scenario.title in line for scenario, line in zip(CATALOGUE.values(), lines, strict=True))
+    assert [line.split()[0] for line in lines] == [*CATALOGUE, *TABLES]
+    entries = (*CATALOGUE.values(), *TABLES.values())
+    assert all(line.endswith(f"  {entry.title}") for entry, line in zip(entries, lines, strict=True))
 
 
 def test_list_starts_fast_since_it_imports_nothing_heavy() -> None:
@@ -50,6 +52,15 @@ def test_show_prints_the_scenario_as_toml(capsys: pytest.CaptureFixture[str]) ->
     assert Scenario(**tomllib.loads(capsys.readouterr().out)) == CATALOGUE["fig-7.10"]
 
 
+@pytest.mark.parametrize("table_id", TABLES)
+def test_show_of_a_table_prints_the_scenarios_that_it_tabulates(
+    table_id: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke(["show", table_id]) == 0
+    shown = tomllib.loads(capsys.readouterr().out)["scenarios"]
+    assert [Scenario(**each) for each in shown] == [CATALOGUE[name] for name in TABLES[table_id].scenarios]
+
+
 def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["--version"]) == 0
     assert capsys.readouterr().out.startswith("kswarms 0.")
@@ -65,10 +76,13 @@ def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
     [
         ("run", "id='': must be one or more of `kswarms list`, or none with --all"),
         ("run fig-6.1a --all", "id='fig-6.1a': must be"),
-        ("run fig-6.1", "id='fig-6.1': must be a scenario of the list; did you mean "),
-        ("run fig-6.1a fgi-7.12", "id='fgi-7.12': must be a scenario of the list; did you mean fig-7.12"),
-        ("run zzz", "id='zzz': must be a scenario of the list; see `kswarms list`"),
+        ("run fig-6.1", "id='fig-6.1': must be a scenario or table of the list; did you mean "),
+        ("run fig-6.1a fgi-7.12", "id='fgi-7.12': must be a scenario or table of the list; did you mean fig"),
+        ("run table-6.9", "id='table-6.9': must be a scenario or table of the list; did you mean table-6"),
+        ("run zzz", "id='zzz': must be a scenario or table of the list; see `kswarms list`"),
         ("show fig-9", "id='fig-9': must be"),
+        ("show table-6.9", "id='table-6.9': must be"),
+        ("run table-6.1 --densities 7", "n=7: must be a multiple of 2"),
         ("run fig-6.1a --densities 7", "n=7: must be a multiple of 2"),
         ("run fig-6.1a --densities 6,0", "n=0: must be a multiple of 2"),
         ("run fig-6.1a --densities -6", "n=-6: must be a multiple of 2"),
@@ -153,15 +167,64 @@ def test_seeds_and_their_first_are_those_asked_for() -> None:
 
 
 @pytest.mark.slow
+def test_a_table_is_played_and_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["run", "table-6.1", *QUICK, "--record", "robots,conflicts"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[:4] == [
+        f"table:  results/{name}.parquet" for name in ("runs", "policies", "conflicts", "robots")
+    ]
+    assert lines[4:6] == ["", f"table-6.1: {TABLES['table-6.1'].title}"]
+    (row,) = (line for line in lines if line.startswith("│"))
+    cells = [cell.strip() for cell in row.strip("│").split("│")]
+    assert (cells[0], cells[1], cells[3]) == ("6", "1.6", "1.6")  # N, and what was published
+    runs = pq.read_table("results/runs.parquet").to_pylist()
+    assert {(row["scenario"], row["duration"]) for row in runs} == {("fig-6.4a", 600.0), ("fig-6.4b", 600.0)}
+    policies = pq.read_table("results/policies.parquet").to_pylist()
+    attack = {row["scenario"]: row["attack_share"] for row in policies}
+    assert [cells[2], cells[4]] == [f"{100 * attack[name]:.1f}" for name in ("fig-6.4a", "fig-6.4b")]
+    assert "mean absolute error" in lines[-2]
+
+    robots = pq.read_table("results/robots.parquet").to_pylist()
+    fights = 0
+    for row in policies:
+        if row["action"] == "fight":
+            learners = [robot for robot in robots if robot["run"] == row["run"] and robot["swarm"] == 2]
+            best = [max(robot["arms"], key=itemgetter("q"))["action"] for robot in learners]
+            assert row["share"] == pytest.approx(best.count("fight") / len(best))
+            fights += len(best)
+    assert fights == 6
+    conflicts = pq.read_table("results/conflicts.parquet").to_pylist()
+    assert {conflict["phase"] for conflict in conflicts} == {"learning", "game"}
+
+
+@pytest.mark.slow
+def test_a_table_without_published_numbers_is_printed_and_its_figure_drawn(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    words = ["run", "table-7.1", "table-6.2", "table-7.1", *QUICK[:-1]]
+    assert invoke(words) == 0
+    printed = capsys.readouterr().out
+    pictures = [f"figure: results/figures/fig-{number}.png" for number in ("7.4", "6.8")]
+    assert "\n".join([*pictures, "", "table-7.1: "]) in printed
+    assert printed.count("table-7.1: ") == printed.count("table-6.2: ") == 1
+    first, second = printed.split("table-6.2: ")
+    assert "published" not in first
+    assert "delta=0.145" in first
+    assert "published" in second
+
+
+@pytest.mark.slow
 def test_jobs_and_order_and_portions_do_not_change_a_byte() -> None:
     words = ["--densities", "6,10", "--seeds", "2", "--no-figures"]
-    assert invoke(["run", "fig-6.1c", "fig-7.10", *words, "--jobs", "1", "--out", "one"]) == 0
-    assert invoke(["run", "fig-7.10", "fig-6.1c", *words, "--jobs", "2", "--out", "two"]) == 0
+    assert invoke(["run", "fig-6.1c", "fig-6.4a", *words, "--jobs", "1", "--out", "one"]) == 0
+    assert invoke(["run", "fig-6.4a", "fig-6.1c", *words, "--jobs", "2", "--out", "two"]) == 0
     for seed in ("1", "0"):
         words[3] = "1"
-        assert invoke(["run", "fig-7.10", "fig-6.1c", *words, "--first-seed", seed, "--out", "three"]) == 0
-    one = Path("one/runs.parquet").read_bytes()
-    assert one == Path("two/runs.parquet").read_bytes() == Path("three/runs.parquet").read_bytes()
+        again = ["--first-seed", seed, "--jobs", "1", "--out", "three"]
+        assert invoke(["run", "fig-6.4a", "fig-6.1c", *words, *again]) == 0
+    for name in ("runs.parquet", "policies.parquet"):
+        one, two, three = (Path(place, name).read_bytes() for place in ("one", "two", "three"))
+        assert one == two == three
 
 
 @pytest.mark.slow
@@ -188,13 +251,13 @@ def test_all_plays_what_the_densities_suit(
     monkeypatch.setattr(cli, "_play", note)
     assert invoke(["run", "--all", "--densities", "6,13", "--seeds", "1", "--no-figures"]) == 0
     sizes = {name: {n for played_name, n in played if played_name == name} for name in CATALOGUE}
-    exceptions = {"fig-6.15": {6, 13}, "fig-7.12": {13}, "fig-7.13a": {13}}
+    exceptions = {"fig-6.15": {6, 13}, "fig-7.12": {13}, "fig-7.13a": {13}, "fig-7.13b": {13}}
     assert sizes == {name: exceptions.get(name, {6}) for name in CATALOGUE}
     printed = capsys.readouterr()
     assert printed.out == "next:   kswarms show fig-6.1a  (what was played)\n"
     assert printed.err == ""
     assert invoke(["run", "--all", "--densities", "6", "--seeds", "1", "--no-figures"]) == 0
-    left_out = "kswarms: none of the densities suits fig-7.12, fig-7.13a: left out\n"
+    left_out = "kswarms: none of the densities suits fig-7.12, fig-7.13a, fig-7.13b: left out\n"
     assert capsys.readouterr().err == left_out
 
 
@@ -224,6 +287,7 @@ def test_ctrl_c_ends_cleanly(jobs: str) -> None:
         words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
     ) as process:
         while not Path("results").exists():  # made when the runs are about to start
+            assert process.poll() is None, "it ended before it began"
             time.sleep(0.05)
         time.sleep(3.0)
         os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers too

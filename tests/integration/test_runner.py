@@ -24,9 +24,12 @@ from scenarios.runs import Run, expand
 
 
 def short(name: str, densities: tuple[int, ...] = (6, 10), seeds: int = 2) -> list[Run]:
-    """Return runs of a scenario with games of 20 s."""
+    """Return runs of a scenario with games of 20 s, after as much learning if there is any."""
     scenario = CATALOGUE[name].replace(densities=densities, seeds=seeds)
-    conditions = tuple(condition.replace(duration=20.0) for condition in scenario.conditions)
+    conditions = tuple(
+        condition.replace(duration=20.0, learning=min(20.0, condition.learning))
+        for condition in scenario.conditions
+    )
     return expand([scenario.replace(conditions=conditions)])
 
 
@@ -50,7 +53,7 @@ class Deadly(Run):
 @pytest.mark.slow
 def test_workers_and_order_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(runner, "GAMES_A_WORKER", 3)  # so that workers are replaced on the way
-    runs = short("fig-6.1c") + short("fig-7.10") + short("fig-6.15", densities=(7,), seeds=1)
+    runs = short("fig-6.1c") + short("fig-6.4a", (6,)) + short("fig-6.15", (7,), seeds=1)
     record = ",".join(RECORDS)
     here = by_name(play_all(runs, 1, record))
     shuffled = random.Random(3).sample(runs, len(runs))
@@ -72,7 +75,8 @@ def test_the_longest_runs_come_first() -> None:
 
 
 def test_an_outcome_has_a_row_for_each_swarm_and_the_records_asked_for() -> None:
-    (run,) = short("fig-7.10", densities=(6,), seeds=1)
+    run = short("fig-7.10", densities=(6,), seeds=1)[-1]
+    assert run.labels == (("fig-7.10", "avoid"),)
     outcome = play(run, "robots,conflicts")
     assert [(row["swarm"], row["size"], row["policy"]) for row in outcome.swarms] == [
         (1, 2, "avoid"),
@@ -80,7 +84,25 @@ def test_an_outcome_has_a_row_for_each_swarm_and_the_records_asked_for() -> None
         (3, 1, "aggressive"),
     ]
     assert set(outcome.records) == {"robots", "conflicts"}
+    assert outcome.policies == []
     assert play(run).records == {}
+
+
+def test_an_outcome_says_what_was_learned_of_whom() -> None:
+    run = short("fig-7.10", densities=(16,), seeds=1)[0]
+    outcome = play(run, "robots")
+    assert [(row["swarm"], row["opponent"], row["action"]) for row in outcome.policies] == [
+        (2, 1, "flight"),
+        (2, 1, "fight"),
+        (2, 3, "flight"),
+        (2, 3, "fight"),
+    ]
+    for opponent in (1, 3):
+        flight, fight = (row for row in outcome.policies if row["opponent"] == opponent)
+        assert flight["share"] + fight["share"] == 1
+        assert flight["attack_share"] == fight["attack_share"] == fight["share"]
+    arms = outcome.records["robots"]["arms"]
+    assert [len(of_robot) for of_robot in arms] == [0] * 4 + [4] * 8 + [0] * 4
 
 
 def test_a_model_is_freed_after_its_run(monkeypatch: pytest.MonkeyPatch) -> None:

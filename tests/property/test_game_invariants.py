@@ -11,7 +11,8 @@ from scipy.spatial.distance import pdist
 
 from agents.actions import TOWARDS
 from agents.fleet import ACTION
-from agents.policies import make_policy
+from agents.policies import Setting, make_policy
+from agents.streams import Streams
 from model.foraging import GameModel
 from model.game import Game, Swarm, apportion
 from model.parameters import PRESETS
@@ -224,7 +225,8 @@ def test_what_holds_fighters_is_the_fight(policies: str, preempt: bool) -> None:
         model = GameModel(dense_game(policies, n, preempt), seed)
         stayed.append(longest_stay(model, 150.0, fights_count=True))
         for robot in model.robots:
-            robot.policy = make_policy("avoid", robot.swarm, model.game.action_set)
+            setting = Setting(robot.swarm, len(model.game.swarms), model.game.action_set, Streams(0, 0))
+            robot.policy = make_policy("avoid", setting)
         assert longest_stay(model, 90.0, fights_count=True) < 60
     assert max(stayed) > 60
 

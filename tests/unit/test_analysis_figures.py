@@ -144,6 +144,13 @@ def test_conditions_of_several_swarms_keep_the_swarms_markers() -> None:
     assert filled.get_markerfacecolor() == filled.get_color() == open_marker.get_color()
 
 
+def test_legend_leaves_out_the_arguments_of_a_policy() -> None:
+    runs = runs_of("fig-x").replace(
+        {"policy": {"attack": """avoid+inter-learner(reward="wlu(delta=0.1, b=1.5)", rule='ucb')"""}}
+    )
+    assert legend(pucks_over_n(runs, "fig-x")) == ["S1: avoid", "S2: avoid+inter-learner"]
+
+
 def test_labels_title_and_seeds() -> None:
     runs = runs_of("fig-x")
     figure = pucks_over_n(
@@ -154,6 +161,8 @@ def test_labels_title_and_seeds() -> None:
     assert axes.get_ylabel() == "pucks deposited by the swarm"
     assert figure.get_suptitle().startswith("fig-x: a title")
     assert max(map(len, figure.get_suptitle().splitlines())) <= 75
+    whole = pucks_over_n(runs, "fig-x", "an inter-learner " * 8).get_suptitle()
+    assert not any(line.endswith("inter-") for line in whole.splitlines())
     assert figure.legends[0].get_title().get_text().startswith("mean of 4 seeds")
     assert list(axes.get_xticks()) == [6, 16, 26]
     fewer = runs[(runs["n"] != 6) | (runs["seed"] == 0)]
@@ -226,12 +235,17 @@ def test_draw_writes_each_scenario_that_has_runs(tmp_path: Path) -> None:
     assert all(path.read_bytes().startswith(PNG) for path in paths)
 
 
+SHOWING_SUD = ("6.10a", "6.10b", "6.12", "6.14", "7.4", "7.6", "7.8", "7.10", "7.11", "7.19")
+
+
 @pytest.mark.parametrize(
     ("scenario", "label"),
     [
         ("fig-6.2", "pucks deposited by the swarm"),
+        ("fig-6.4a", "pucks deposited by the swarm"),
+        ("fig-6.15", "pucks deposited by the swarm"),
         ("fig-6.3", "share of time"),
-        ("fig-7.10", "SUD of S2 (pucks)"),
+        *((f"fig-{number}", "SUD of S2 (pucks)") for number in SHOWING_SUD),
     ],
 )
 def test_draw_shows_what_the_scenario_is_for(

@@ -2,7 +2,7 @@
 
 import pytest
 
-from analysis.published import argos_fixed_policies, table_6_1, table_6_2
+from analysis.published import argos_fixed_policies, learned_percentages, table_6_1, table_6_2
 
 DENSITIES = [6, 10, 16, 20, 26, 30, 36, 40, 46, 50]
 
@@ -21,6 +21,16 @@ def test_table_6_2() -> None:
     assert list(table["n"]) == DENSITIES
     assert list(table["inter_attack_pct"]) == [0, 1, 1.8, 1.5, 15.7, 37.6, 56.9, 71.25, 75.4, 77.8]
     assert table["intra_avoid_pct"].min() == 99.4
+
+
+def test_both_tables_in_one_form() -> None:
+    both = learned_percentages()
+    columns = both.set_index(["scenario", "learned", "n"])["published"]
+    assert len(columns) == 40
+    assert columns["fig-6.4a", "attack"].tolist() == table_6_1()["fig_6_4a_attack_pct"].tolist()
+    assert columns["fig-6.4b", "attack", 36] == 26.3
+    assert columns["fig-6.8", "attack", 40] == 71.25
+    assert columns["fig-6.8", "flight within", 50] == 99.4
 
 
 def test_argos_games_are_ten_of_each_kind_and_last_600_s_for_every_robot() -> None:

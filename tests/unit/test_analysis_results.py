@@ -6,7 +6,14 @@ import pandas as pd
 import pytest
 
 from agents.errors import InputError
-from analysis.results import RUNS_NUMBERS, RUNS_TEXT, read_runs
+from analysis.results import (
+    POLICIES_NUMBERS,
+    POLICIES_TEXT,
+    RUNS_NUMBERS,
+    RUNS_TEXT,
+    read_policies,
+    read_runs,
+)
 
 
 @pytest.fixture
@@ -81,3 +88,21 @@ def test_numbers_written_as_text(tmp_path: Path, runs: pd.DataFrame) -> None:
     runs.astype({"pucks": str}).to_parquet(tmp_path / "runs.parquet")
     with pytest.raises(InputError, match=r"column pucks=.*must be a column of numbers"):
         read_runs(tmp_path)
+
+
+def test_policies_are_read_and_checked_by_their_own_columns(tmp_path: Path) -> None:
+    policies = pd.DataFrame({name: [0.5, 1.0] for name in POLICIES_NUMBERS})
+    policies = policies.assign(**{name: ["a", ""] for name in POLICIES_TEXT})
+    policies.to_parquet(tmp_path / "policies.parquet")
+    assert list(read_policies(tmp_path)["attack_share"]) == [0.5, 1.0]
+    with pytest.raises(InputError, match=r"must be a directory that holds runs\.parquet"):
+        read_runs(tmp_path)
+    for name in (*POLICIES_TEXT, *POLICIES_NUMBERS):
+        policies.drop(columns=name).to_parquet(tmp_path / "policies.parquet")
+        with pytest.raises(InputError, match=f"policies.*must have the missing columns {name}$"):
+            read_policies(tmp_path)
+
+
+def test_directory_without_policies(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"must be a directory that holds policies\.parquet"):
+        read_policies(tmp_path)

@@ -133,7 +133,7 @@ def test_the_table_of_conflicts() -> None:
 def test_the_table_of_robots() -> None:
     model = played("robots")
     table = pd.DataFrame(model.tables()["robots"])
-    assert list(table.columns) == ["robot", "swarm", "policy", "pucks", "t_a", "t_p"]
+    assert list(table.columns) == ["robot", "swarm", "policy", "pucks", "t_a", "t_p", "arms"]
     assert table["robot"].tolist() == list(range(12))
     assert (table["t_a"] + table["t_p"]).tolist() == pytest.approx([60.0] * 12)
     for row in model.results():

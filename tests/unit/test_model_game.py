@@ -101,14 +101,14 @@ def test_every_layout_has_an_arena(layout: str) -> None:
             {"side": 0.9, "parameters": {"station_radius": 0.05, "base_radius": 0.05}},
             "n=20: robots of radius",
         ),
-        ({"parameters": {"period": 0.4}}, "period=0.4: must be so short"),
+        ({"parameters": {"period": 0.5}}, "period=0.5: must be so short"),
         ({"body": "krembot", "parameters": {"period": 0.2}}, "period=0.2: must be so short"),
         (
             {
-                "parameters": {"period": 0.3},
+                "parameters": {"period": 0.35},
                 "swarms": (Swarm(policy="avoid", size=1, drive=0.1, drive_action=0.9),),
             },
-            "period=0.3: must be so short",
+            "period=0.35: must be so short",
         ),
     ],
 )
@@ -121,11 +121,11 @@ def test_bad_input_is_one_line_with_field_value_and_what_is_allowed(
     assert "\n" not in str(refusal.value)
 
 
-def test_a_robot_may_cover_half_its_radius_in_a_period() -> None:
+def test_a_robot_may_cover_eight_tenths_of_its_radius_in_a_period() -> None:
     fast = (Swarm(policy="avoid", size=2, drive=0.68, drive_action=0.68),)
-    assert game(swarms=fast, parameters=FITTED.replace(period=0.25)).size == 2
-    with pytest.raises(InputError, match=r"^period=0.26: must be so short"):
-        game(swarms=fast, parameters=FITTED.replace(period=0.26))
+    assert game(swarms=fast, parameters=FITTED.replace(period=0.40)).size == 2
+    with pytest.raises(InputError, match=r"^period=0.41: must be so short"):
+        game(swarms=fast, parameters=FITTED.replace(period=0.41))
 
 
 @pytest.mark.parametrize("body", ["krembot-sim", "krembot"])

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from agents.actions import Action
 from agents.errors import InputError
 from scenarios.catalogue import CATALOGUE
-from scenarios.description import Condition, Scenario, SwarmRule
+from scenarios.description import Condition, Scenario, SwarmRule, toml_of
 
 AVOID = SwarmRule(policy="avoid")
 
@@ -76,6 +76,7 @@ def test_a_game_has_everything_its_condition_says() -> None:
         body="krembot",
         parameters="argos, period=0.05, friction=0.25, preempt=true, wall_escape=clear",
         actions=(flee, push),
+        learning=900.0,
         duration=120.0,
         puck_limit=9,
         supply=30,
@@ -84,7 +85,7 @@ def test_a_game_has_everything_its_condition_says() -> None:
     assert (first.policy, first.size, first.drive, first.drive_action) == ("flee", 4, 0.7, 0.5)
     assert (second.policy, second.size, second.drive, second.drive_action) == ("attack", 4, 0.6, 0.6)
     assert (game.layout, game.body, game.actions) == ("nearer-station", "krembot", (flee, push))
-    assert (game.duration, game.puck_limit, game.supply) == (120.0, 9, 30)
+    assert (game.learning, game.duration, game.puck_limit, game.supply) == (900.0, 120.0, 9, 30)
     changed = (game.parameters.friction, game.parameters.preempt, game.parameters.wall_escape)
     assert changed == (0.25, True, "clear")
     assert game.parameters.leg_mean == 3.0  # of the preset
@@ -98,6 +99,7 @@ def test_a_game_has_everything_its_condition_says() -> None:
         ({"seeds": 0}, "seeds"),
         ({"densities": ()}, "densities"),
         ({"densities": (6, 7)}, "n"),
+        ({"densities": (1000, 6)}, "n"),
         ({"densities": (6.5,)}, "densities.0"),
         ({"conditions": ()}, "conditions"),
         ({"conditions": (with_shares(1, 1), with_shares(1, 1))}, "conditions"),
@@ -126,6 +128,8 @@ def test_a_scenario_that_makes_no_sense_is_refused(changes: dict[str, object], f
         {"parameters": "fitted, friction=-1"},
         {"parameters": "fitted, friction=nan"},
         {"duration": 0.0},
+        {"learning": -1.0},
+        {"learning": math.inf},
         {"puck_limit": 0},
         {"supply": -1},
         {"actions": (Action(name="push", direction=1, duration=1.0),)},  # avoid needs a flight
@@ -134,6 +138,43 @@ def test_a_scenario_that_makes_no_sense_is_refused(changes: dict[str, object], f
 def test_a_world_that_cannot_be_is_refused_with_the_scenario(world: dict[str, object]) -> None:
     with pytest.raises(InputError):
         Scenario(id="fig-0", title="A test", conditions=(Condition(**({"swarms": (AVOID, AVOID)} | world)),))
+
+
+@pytest.mark.parametrize(
+    ("policy", "complaint"),
+    [
+        ("dance", "policy='dance': must be one of avoid, attack, aggressive, random, learner"),
+        ("inter-learner(reward='gold')", "reward='gold': must be one of wlu, individual, single-swarm"),
+        ("inter-learner(rule='best')", "rule='best': must be one of ucb, discounted-ucb, greedy"),
+        ("learner(about='all')", "about='all': must be inter, intra or both"),
+        ("inter-learner(otherwise='hop')", "otherwise='hop': must be one of flight, fight"),
+        ("inter-learner(rule='ucb(gamma=-1)')", "gamma=-1: must be greater than or equal to 0"),
+        ("inter-learner(rule='discounted-ucb(discount=0)')", "discount=0: must be greater than 0"),
+        ("inter-learner(rule='discounted-ucb(discount=2)')", "discount=2: must be less than or equal to 1"),
+        ("inter-learner(rule='periodic-random(every=0)')", "every=0: must be greater than or equal to 1"),
+        ("inter-learner(reward='wlu(delta=-0.1)')", "=-0.1: must be greater than or equal to 0"),
+        ("inter-learner(reward='wlu(delta=1.5)')", "=1.5: must be less than or equal to 1"),
+        ("inter-learner(reward='wlu(b=0)')", "=0: must be greater than 0"),
+        ("inter-learner(reward='wlu(b=3)')", "=3: must be less than 3"),
+        ("inter-learner(reward='wlu(beta=3)')", "beta=3: no such field; there are delta, b"),
+        ("inter-learner(reward='wlu(delta=0.1')", "must be name or name(key=value, …)"),
+        ("avoid(speed=3)", "policy.speed=3: no such field; there are none"),
+    ],
+)
+def test_a_policy_that_cannot_be_is_refused_in_a_line_that_says_why(policy: str, complaint: str) -> None:
+    text = f"""
+        id = "my-1"
+        title = "Mine"
+        densities = [6]
+        [[conditions]]
+        learning = 300.0
+        swarms = [{{policy = "avoid"}}, {{policy = "{policy}"}}]
+    """
+    with pytest.raises(InputError) as refusal:
+        Scenario(**tomllib.loads(text))
+    assert complaint in str(refusal.value)
+    assert "policy" in refusal.value.field
+    assert "\n" not in str(refusal.value)
 
 
 def test_a_swarm_needs_robots_and_a_condition_needs_swarms() -> None:
@@ -168,3 +209,10 @@ def test_descriptions_cannot_be_changed() -> None:
 @pytest.mark.parametrize("scenario", CATALOGUE.values(), ids=CATALOGUE)
 def test_toml_holds_the_whole_scenario(scenario: Scenario) -> None:
     assert Scenario(**tomllib.loads(scenario.to_toml())) == scenario
+
+
+def test_toml_holds_several_scenarios() -> None:
+    several = [CATALOGUE["fig-6.4a"], CATALOGUE["fig-6.12"]]
+    read = tomllib.loads(toml_of(several))
+    assert [Scenario(**scenario) for scenario in read.pop("scenarios")] == several
+    assert read == {}

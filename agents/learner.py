@@ -1,0 +1,144 @@
+"""The learner: a bandit for each swarm-ID that a robot can meet (section 1.5, Algorithm 1)."""
+
+from typing import TYPE_CHECKING, Any, Literal
+
+from agents.actions import AWAY, Action
+from agents.bandit import Bandit
+from agents.calls import build
+from agents.errors import InputError
+from agents.rewards import REWARDS
+from agents.selection import RULES
+from agents.streams import Purpose
+
+if TYPE_CHECKING:
+    from agents.policies import Setting
+
+
+class Learner:
+    """Learns which action to take against which swarm, and takes a fixed one against the others.
+
+    Parameters
+    ----------
+    setting : Setting
+        Where it plays.
+    about : {'inter', 'intra', 'both'}
+        Whether it learns about other swarms, its own, or both.
+    reward, rule : str
+        A reward of `agents.rewards.REWARDS` and a rule of `agents.selection.RULES`, with their arguments.
+    otherwise : str
+        Name of the action against the swarms that it does not learn about; by default the first that
+        drives away.
+
+    Attributes
+    ----------
+    bandits : dict of int to Bandit
+        What it knows about each swarm (counted from 0) that it learns about.
+    learning : bool
+        Whether it still learns; afterwards it takes what it learned, without exploration.
+
+    Raises
+    ------
+    InputError
+        If an argument is not allowed.
+    """
+
+    def __init__(
+        self,
+        setting: "Setting",
+        about: Literal["inter", "intra", "both"] = "both",
+        reward: str = "wlu",
+        rule: str = "ucb",
+        otherwise: str = "",
+    ) -> None:
+        if about not in ("inter", "intra", "both"):
+            raise InputError("about", about, "must be inter, intra or both")
+        self.swarm = setting.swarm
+        self.actions = setting.actions
+        self._flight = next((k for k, a in enumerate(setting.actions) if a.direction == AWAY), 0)
+        self._otherwise = self.actions[self._flight]
+        if otherwise:
+            by_name = {action.name: action for action in self.actions}
+            if otherwise not in by_name:
+                raise InputError("otherwise", otherwise, f"must be one of {', '.join(by_name)}")
+            self._otherwise = by_name[otherwise]
+        self._reward = build("reward", reward, REWARDS)
+        for opponent in sorted(self._reward.opponents()):
+            if not 1 <= opponent <= setting.swarms:
+                raise InputError("reward", reward, f"names swarm {opponent}, the game has {setting.swarms}")
+        self._rule = build("rule", rule, RULES)
+        self._factor = self._rule.factor
+        self.bandits = {
+            swarm: Bandit(len(self.actions))
+            for swarm in range(setting.swarms)
+            if about == "both" or (swarm == self.swarm) == (about == "intra")
+        }
+        if not self.bandits:
+            raise InputError("about", about, "needs another swarm to learn about")
+        self.learning = True
+        self._draws = setting.streams.draws
+        self._opponent = -1
+        self._arm = -1
+
+    def choose(self, opponent: int) -> Action:
+        """Return the action to take against a robot of swarm `opponent` (Eq. 4.16 while learning)."""
+        self._opponent = opponent
+        bandit = self.bandits.get(opponent)
+        if bandit is None:
+            return self._otherwise
+        if not self.learning:
+            return self.learned(opponent)
+        self._arm = self._rule.choose(bandit, self._draws(Purpose.EXPLORE))
+        bandit.choices += 1
+        return self.actions[self._arm]
+
+    def learn(self, t_a: float, t_p: float, n_active: int) -> tuple[float, float]:
+        """Close the conflict chosen for last, and reward its arm.
+
+        Parameters
+        ----------
+        t_a, t_p : float
+            T(a) and T(p) (s).
+        n_active : int
+            n'_i, sensors that were active when it began.
+
+        Returns
+        -------
+        reward, value : float
+            R of the conflict (s) and Q of its arm after it; NaN if nothing is learned of that swarm.
+        """
+        opponent, arm = self._opponent, self._arm
+        bandit = self.bandits.get(opponent)
+        if bandit is None or not self.learning:
+            return float("nan"), float("nan")
+        reward = self._reward.of(
+            t_a, t_p, n_active, self.actions[arm].direction, opponent != self.swarm, opponent + 1
+        )
+        bandit.update(arm, reward, t_a + t_p, self._factor)
+        return reward, bandit.value(arm)
+
+    def learned(self, opponent: int) -> Action:
+        """Return argmax Q for a swarm learned about; flight where nothing is known."""
+        best = self.bandits[opponent].best()
+        return self.actions[self._flight if best is None else best]
+
+    def freeze(self) -> None:
+        """Stop learning."""
+        self.learning = False
+
+    def snapshot(self) -> list[dict[str, Any]]:
+        """Return what is known: for each arm the opponent's swarm (from 1), action, Σ R, Σ T, N and Q."""
+        return [
+            {
+                "opponent": swarm + 1,
+                "action": action.name,
+                "reward": bandit.reward[arm],
+                "time": bandit.time[arm],
+                "count": bandit.count[arm],
+                "q": bandit.value(arm),
+            }
+            for swarm, bandit in self.bandits.items()
+            for arm, action in enumerate(self.actions)
+        ]
+
+    def __repr__(self) -> str:
+        return f"Learner(swarm={self.swarm}, reward={self._reward!r}, rule={self._rule!r}, {self.bandits})"

@@ -1,0 +1,39 @@
+"""The catalogue: a scenario for every figure of the source's chapters 6 and 7, and the tables made of them.
+
+Each entry is data (specification, 3.2 and 3.3); `words` only saves repetition, so that a scenario reads as a
+row of the specification's tables: id, title, S1, S2 and what differs from the default world.
+"""
+
+from typing import Final, NamedTuple
+
+from scenarios.catalogue.argos import ARGOS
+from scenarios.catalogue.disadvantaged import DISADVANTAGED
+from scenarios.catalogue.symmetric import SYMMETRIC
+
+CATALOGUE: Final = {scenario.id: scenario for scenario in (*SYMMETRIC, *DISADVANTAGED, *ARGOS)}
+"""Every scenario by its id, in the order of the source."""
+
+
+class SourceTable(NamedTuple):
+    """A table of the source: what the swarms of some figures have learned.
+
+    Attributes
+    ----------
+    title : str
+        What it shows, in a line.
+    scenarios : tuple of str
+        Ids of the figures that it tabulates; its own id stands for them.
+    """
+
+    title: str
+    scenarios: tuple[str, ...]
+
+
+TABLES: Final = {
+    "table-6.1": SourceTable("Learned to attack, of figures 6.4a and 6.4b", ("fig-6.4a", "fig-6.4b")),
+    "table-6.2": SourceTable("Learned to attack, and to flee within the swarm, of figure 6.8", ("fig-6.8",)),
+    "table-6.3": SourceTable("Learned to attack, of figure 6.12", ("fig-6.12",)),
+    "table-7.1": SourceTable("Learned to attack, of figure 7.4", ("fig-7.4",)),
+    "table-7.2": SourceTable("Learned to attack, of figures 7.16a and 7.16b", ("fig-7.16a", "fig-7.16b")),
+}
+"""Every table by its id, in the order of the source."""

@@ -1,0 +1,22 @@
+"""The controller of the ARGoS measurements (reference/README.md), to compare the physics."""
+
+from typing import Any, Final
+
+from scenarios.catalogue.words import curve, swarm
+from scenarios.description import Scenario
+
+AVOID, ATTACK = swarm("avoid"), swarm("attack")
+IN_ARGOS: Final[dict[str, Any]] = {"parameters": "argos", "body": "argos-footbot"}
+DENSITIES: Final = (6, 16, 26, 36, 46)
+
+# fmt: off
+ARGOS: Final = (
+    Scenario(id="argos-avoid-avoid", title="Avoid against avoid, as in ARGoS", densities=DENSITIES,
+             conditions=curve(AVOID, AVOID, **IN_ARGOS)),
+    Scenario(id="argos-attack-attack", title="Attack against attack, as in ARGoS", densities=DENSITIES,
+             conditions=curve(ATTACK, ATTACK, **IN_ARGOS)),
+    Scenario(id="argos-avoid-attack", title="Avoid against attack, as in ARGoS", densities=DENSITIES,
+             conditions=curve(AVOID, ATTACK, **IN_ARGOS)),
+)
+# fmt: on
+"""Every scenario that was also played in ARGoS."""

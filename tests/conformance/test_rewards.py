@@ -1,0 +1,241 @@
+"""What every reward must do: a new one in `REWARDS` is checked by all of this without another line.
+
+Each check is a function of a reward's class, and has a reward that it must turn down.
+"""
+
+import copy
+import math
+import pickle
+import random
+from collections.abc import Callable, Iterator
+from itertools import product
+from typing import Any, Final
+
+import pytest
+from pydantic import Field
+
+from agents.calls import build
+from agents.errors import InputError
+from agents.rewards import REWARDS, WLU, IndividualUtility, Reward
+
+Case = tuple[float, float, int, int, bool, int]
+
+
+def cases() -> Iterator[Case]:
+    """Return what a reward may be told: T(a), T(p), n', d, inter, opponent."""
+    yield from product(
+        (0.1, 2.3, 600.0), (0.0, 0.1, 6.0, 3000.0), (0, 3, 8), (-1, 1), (False, True), (1, 2, 9)
+    )
+
+
+def check_it_is_built_from_its_name(reward: type[Reward]) -> None:
+    name = next((name for name, known in REWARDS.items() if known is reward), None)
+    built = build("reward", name, REWARDS) if name else reward()
+    assert type(built) is reward
+    assert built == reward()
+
+
+def check_repr_tells_its_name_and_arguments(reward: type[Reward]) -> None:
+    text = repr(reward())
+    assert text.startswith(f"{reward.__name__}(")
+    assert all(f"{field}=" in text for field in reward.model_fields)
+    assert eval(text, {reward.__name__: reward}) == reward()
+
+
+def check_copies_are_equal_and_reward_alike(reward: type[Reward]) -> None:
+    one = reward()
+    assert one == reward()
+    assert one != object()
+    assert {one: 1}[reward()] == 1
+    for twin in (copy.copy(one), copy.deepcopy(one), pickle.loads(pickle.dumps(one)), one.replace()):
+        assert twin == one
+        assert [twin.of(*case) for case in cases()] == [one.of(*case) for case in cases()]
+
+
+def check_it_is_frozen(reward: type[Reward]) -> None:
+    one = reward()
+    before = repr(one), dict(vars(one))
+    for case in cases():
+        one.of(*case)
+    assert (repr(one), dict(vars(one))) == before
+    for field in reward.model_fields:
+        with pytest.raises(ValueError, match="frozen"):
+            setattr(one, field, getattr(one, field))
+
+
+def check_it_knows_no_other_arguments(reward: type[Reward]) -> None:
+    with pytest.raises(InputError):
+        reward(no_such_argument=1)
+
+
+def check_numbers_are_checked(reward: type[Reward]) -> None:
+    for field, default in reward():
+        if isinstance(default, float):
+            for value in (math.nan, math.inf, -math.inf, -1.0, "much", None):
+                with pytest.raises(InputError) as caught:
+                    reward(**{field: value})
+                assert caught.value.field == field
+
+
+def check_a_reward_is_a_finite_number(reward: type[Reward]) -> None:
+    for case in cases():
+        r = reward().of(*case)
+        assert type(r) is float
+        assert math.isfinite(r)
+
+
+def check_the_same_conflict_brings_the_same(reward: type[Reward]) -> None:
+    one = reward()
+    first = {case: one.of(*case) for case in cases()}
+    for case in reversed(list(first)):
+        assert one.of(*case) == first[case]
+        assert reward().of(*case) == first[case]
+
+
+def check_program_time_does_no_harm(reward: type[Reward]) -> None:
+    for t_a, t_p, *rest in cases():
+        assert reward().of(t_a, t_p + 1.0, *rest) >= reward().of(t_a, t_p, *rest)
+    more = [
+        reward().of(1.0, 2.0, 8, d, inter, 1) > reward().of(1.0, 1.0, 8, d, inter, 1)
+        for d, inter in product((-1, 1), (False, True))
+    ]
+    assert all(more)
+
+
+def check_it_is_in_seconds(reward: type[Reward]) -> None:
+    """Q is a reward for each second, so twice the times are worth twice as much (Eqs. 4.15, 5.4)."""
+    for t_a, t_p, *rest in cases():
+        assert reward().of(2 * t_a, 2 * t_p, *rest) == pytest.approx(2 * reward().of(t_a, t_p, *rest))
+
+
+def check_sensors_count_in_eighths(reward: type[Reward]) -> None:
+    """R is linear in n' (Eqs. 5.4, 6.3)."""
+    for t_a, t_p, n_active, *rest in cases():
+        none, all_of_them = (reward().of(t_a, t_p, n, *rest) for n in (0, 8))
+        expected = none + n_active / 8 * (all_of_them - none)
+        assert reward().of(t_a, t_p, n_active, *rest) == pytest.approx(expected, abs=1e-9)
+
+
+class Unbuildable(Reward):
+    """Has an argument without a default."""
+
+    delta: float
+
+    def of(self, *conflict: Any) -> float:
+        return 0.0
+
+
+class Mute(WLU):
+    """Tells nothing of itself."""
+
+    def __repr__(self) -> str:
+        return "<reward>"
+
+
+class Moody(IndividualUtility):
+    """No two are alike."""
+
+    def __init__(self, **values: Any) -> None:
+        super().__init__(**values)
+        object.__setattr__(self, "mood", random.random())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Moody) and vars(self) == vars(other)
+
+    __hash__ = IndividualUtility.__hash__
+
+
+class Thawed(IndividualUtility):
+    """Can be changed."""
+
+    model_config = {"frozen": False}
+
+
+class Lenient(WLU):
+    """Takes any argument."""
+
+    model_config = {"extra": "ignore"}
+
+
+class Unchecked(WLU):
+    """Takes any number."""
+
+    model_config = {"allow_inf_nan": True}
+    bonus: float = 0.0
+
+
+class Whole(WLU):
+    """Gives a number that is none."""
+
+    def of(self, *conflict: Any) -> float:
+        return 1 if conflict[1] else math.nan
+
+
+class Tired(WLU):
+    """Gives less each time."""
+
+    given: list[float] = Field(default_factory=list)
+
+    def of(self, *conflict: Any) -> float:
+        self.given.append(0.0)
+        return super().of(*conflict) / len(self.given)
+
+
+class Hurried(WLU):
+    """Would rather have no program time."""
+
+    def of(self, t_a: float, t_p: float, *rest: Any) -> float:
+        return super().of(t_a, -t_p, *rest)
+
+
+class Flat(WLU):
+    """Adds a bonus of 1 for each conflict, however short."""
+
+    def of(self, *conflict: Any) -> float:
+        return super().of(*conflict) + 1.0
+
+
+class Steep(WLU):
+    """Goes by the square of n'."""
+
+    def of(self, t_a: float, t_p: float, n_active: int, *rest: Any) -> float:
+        return super().of(t_a, t_p, n_active * n_active, *rest)
+
+
+Check = Callable[[type[Reward]], None]
+CHECKS: Final[dict[Check, type[Reward]]] = {
+    check_it_is_built_from_its_name: Unbuildable,
+    check_repr_tells_its_name_and_arguments: Mute,
+    check_copies_are_equal_and_reward_alike: Moody,
+    check_it_is_frozen: Thawed,
+    check_it_knows_no_other_arguments: Lenient,
+    check_numbers_are_checked: Unchecked,
+    check_a_reward_is_a_finite_number: Whole,
+    check_the_same_conflict_brings_the_same: Tired,
+    check_program_time_does_no_harm: Hurried,
+    check_it_is_in_seconds: Flat,
+    check_sensors_count_in_eighths: Steep,
+}
+"""Every check, with a reward that must not pass it."""
+
+
+@pytest.mark.parametrize("name", REWARDS)
+@pytest.mark.parametrize("check", CHECKS)
+def test_every_reward_passes_every_check(name: str, check: Check) -> None:
+    check(REWARDS[name])
+
+
+@pytest.mark.parametrize("check", CHECKS)
+def test_every_check_turns_a_bad_reward_down(check: Check) -> None:
+    try:
+        check(CHECKS[check])
+    except (AssertionError, InputError, pytest.fail.Exception):
+        return
+    pytest.fail(f"{check.__name__} let {CHECKS[check].__name__} pass")
+
+
+def test_names_are_as_users_write_them() -> None:
+    for name in REWARDS:
+        assert name == name.lower().strip()
+        assert not set(name) & set("()+,'\" ")
+    assert len(set(REWARDS.values())) == len(REWARDS)

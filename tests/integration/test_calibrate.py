@@ -1,0 +1,116 @@
+"""`kswarms calibrate` on real games of few robots, and on stubbed ones when its process is killed."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import analysis.published
+from scenarios.cli import invoke
+
+TINY = [
+    *("calibrate", "--free", "friction,gamma", "--densities", "6", "--seeds", "1", "--generations", "2"),
+    *("--population", "4", "--validation-seeds", "5"),
+]
+
+# A fit of stubbed games whose process kills itself after so many of them, with what it measured saved or not.
+FIT = """
+import math, os, signal, sys
+from pathlib import Path
+from scenarios import calibration_games
+from scenarios.calibration import Setup, calibrate
+
+calibration_games._SAVE_EVERY = float(sys.argv[3])
+games = 0
+
+def play(runs):
+    global games
+    for run in runs:
+        games += 1
+        if games > int(sys.argv[2]):
+            os.kill(os.getpid(), signal.SIGKILL)
+        yield run, min(1.0, abs(math.log(run.game.parameters.friction / 0.3)) + 0.01 * (run.seed % 7))
+
+setup = Setup(free=("friction", "gamma"), densities=(6,), seeds=1, generations=3, population=4)
+calibrate(setup, {("avoid", 6): 2.0, ("attack", 6): 0.0}, play, Path(sys.argv[1]))
+"""
+
+
+@pytest.fixture(autouse=True)
+def _in_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let relative paths lead into a directory of the test's own; processes find the package from there."""
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(path or str(Path.cwd()) for path in sys.path))
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
+def one_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let Table 6.1 have its first row alone, so that a validation takes seconds."""
+    table = analysis.published.table_6_1().head(1)
+    monkeypatch.setattr(analysis.published, "table_6_1", lambda: table.copy())
+
+
+def _fit(out: str, games: int, save_every: float = 0.0) -> int:
+    return subprocess.run([sys.executable, "-c", FIT, out, str(games), str(save_every)]).returncode
+
+
+@pytest.mark.slow
+def test_a_killed_fit_goes_on_and_leaves_the_trace_of_an_undisturbed_one() -> None:
+    assert _fit("whole", 10_000) == 0
+    assert _fit("parts", 5) == -9
+    assert _fit("parts", 9, save_every=1000.0) == -9  # these games are lost, and played again
+    assert _fit("parts", 10_000) == 0
+    assert Path("parts/calibration.json").read_bytes() == Path("whole/calibration.json").read_bytes()
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("one_row")
+def test_calibrate_plays_says_what_it_found_and_does_not_play_again(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert invoke([*TINY, "--jobs", "1"]) == 0
+    printed = capsys.readouterr()
+    lines = dict(line.split(": ", 1) for line in printed.out.splitlines())
+    assert list(lines) == ["error", "gain", "start", "parameters", "rule", "trace"]
+    assert lines["trace"].strip() == "calibration/calibration.json"
+    trace = json.loads(Path("calibration/calibration.json").read_text())
+    assert lines["parameters"].strip() == trace["result"]["parameters"]
+    assert len(trace["generations"]) == 2
+    assert all(0 <= error <= 100 for generation in trace["generations"] for error in generation["errors"])
+    assert "generation 2 of 2: errors" in printed.err
+
+    monkeypatch.setattr("scenarios.cli.play_all", None)  # to be called would be an error
+    assert invoke(TINY) == 0
+    assert capsys.readouterr().out == printed.out
+
+
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        ("--free friction,viscosity", "free='viscosity': must be among conflict_distance, "),
+        ("--free friction", "free='friction': must be two or more different parameters"),
+        ("--free=", "free='': must be two or more"),
+        ("--densities 6,7", "densities=7: must be among 6, 10, 16"),
+        ("--densities x", "densities='x': must be integers"),
+        ("--seeds 0", "seeds=0: must be greater"),
+        ("--generations 0", "generations=0: must be greater"),
+        ("--population 2", "population=2: must be at least 4"),
+        ("--validation-seeds 0", "validation_seeds=0: must be greater"),
+        ("--jobs 0", "jobs=0: must be at least 1"),
+        ("--out taken", "out='taken': must be a writable directory"),
+        ("--resume", "No such option"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line_and_nothing_is_written(
+    options: str, line: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("taken").write_text("a file")
+    assert invoke(["calibrate", *options.split()]) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err.startswith(f"kswarms: {line}")
+    assert printed.err.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["taken"]

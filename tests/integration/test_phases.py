@@ -1,0 +1,339 @@
+"""First learning, then the measured game, in one world (specification, section 3.1)."""
+
+import json
+import math
+from collections.abc import Iterator
+from contextlib import suppress
+from itertools import pairwise
+from typing import Any
+
+import pytest
+from simpy.core import StopSimulation
+
+from agents.actions import AWAY, TOWARDS, Action
+from agents.fleet import ACTION
+from agents.policies import describe
+from model.foraging import GameModel
+from model.game import Game, Swarm
+from model.parameters import PRESETS
+from model.plain import ForagingModel
+from model.recording import policy_rows
+
+LEARNING, MEASURED = 120.0, 60.0
+SWITCH = 1200
+"""Control periods of learning."""
+ONE_AND_THE_SAME = (
+    Action(name="flight", direction=AWAY, duration=1.8),
+    Action(name="other-flight", direction=AWAY, duration=1.8),
+)
+"""Two actions between which a choice makes no difference to the world."""
+
+Row = dict[str, Any]
+
+
+def game(*policies: str, size: int = 6, learning: float = LEARNING, **rest: Any) -> Game:
+    swarms = tuple(Swarm(policy=policy, size=size) for policy in policies)
+    return Game(swarms=swarms, learning=learning, **{"duration": MEASURED, **rest})
+
+
+def play(what: Game, seed: int = 0, record: str = "conflicts,robots") -> GameModel:
+    model = GameModel(what, seed, record=record)
+    model.play()
+    return model
+
+
+def at_the_switch(what: Game, seed: int = 0, record: str = "conflicts,robots") -> GameModel:
+    """Play the learning alone; the measured game has begun, but no robot has decided or moved in it."""
+    model = GameModel(what, seed, record=record, sample_period=what.learning)
+    model.step()
+    assert (model.env.now, model.phase) == (SWITCH, "game")
+    return model
+
+
+def world(model: GameModel) -> bytes:
+    """Return all that the world is made of: bodies, what they do, pucks they carry, supplies."""
+    positions = model.space.agent_positions.tobytes()
+    return positions + model.fleet.robots.tobytes() + json.dumps(model.supply).encode()
+
+
+def rows_of(model: GameModel, phase: str) -> list[Row]:
+    table = model.tables()["conflicts"]
+    rows = [dict(zip(table, values, strict=True)) for values in zip(*table.values(), strict=True)]
+    return [row for row in rows if row["phase"] == phase]
+
+
+def everything(model: GameModel) -> str:
+    return json.dumps([model.results(), model.tables(), world(model).hex()])
+
+
+def events(model: GameModel) -> Iterator[None]:
+    """Have the clock process one event after the other, to the end of the game."""
+    with suppress(StopSimulation):
+        while True:
+            model.env.step()
+            yield
+
+
+# The measured game continues the world.
+
+
+@pytest.mark.parametrize("policies", ["avoid,attack", "aggressive,mixed"])
+@pytest.mark.parametrize("preempt", [False, True])
+def test_the_switch_changes_nothing_in_the_world(policies: str, preempt: bool) -> None:
+    """Two phases are the same world as one game of both their lengths, where nobody learns."""
+    rest = {"supply": 9, "parameters": PRESETS["fitted"].replace(preempt=preempt)}
+    phased = at_the_switch(game(*policies.split(","), **rest))
+    whole = GameModel(
+        game(*policies.split(","), learning=0.0, **{**rest, "duration": LEARNING + MEASURED}),
+        sample_period=LEARNING,
+    )
+    whole.step()
+    assert world(phased) == world(whole)
+    # Something is under way that a new start would interrupt.
+    assert ACTION in phased.fleet.phase.tolist()
+    assert phased.carried_at_start == sum(phased.fleet.carrying.tolist()) > 0
+    assert 0 < sum(phased.supply) < 18
+    before = (whole.pucks.copy(), whole.picked_up)
+    for model in (phased, whole):
+        model.play()
+    assert world(phased) == world(whole)
+    assert [a + b for a, b in zip(before[0], phased.pucks, strict=True)] == whole.pucks
+    assert before[1] + phased.picked_up == whole.picked_up
+
+
+def test_what_a_learner_draws_disturbs_nobody() -> None:
+    """Random choice among actions that are the same leaves every other draw of every robot alone."""
+    for policy in (
+        "learner(rule='uniform-random')",
+        "learner(rule='periodic-random(every=2)')",
+        "learner",
+        "inter-learner(rule='greedy')",
+    ):
+        learners = play(game("avoid", policy, actions=ONE_AND_THE_SAME))
+        fixed = play(game("avoid", "avoid", actions=ONE_AND_THE_SAME))
+        actions = {row["action"] for row in rows_of(learners, "learning") if row["swarm"] == 2}
+        assert actions == {"flight", "other-flight"}
+        assert world(learners) == world(fixed)
+        assert learners.pucks == fixed.pucks
+
+
+def test_scores_times_and_conflicts_restart() -> None:
+    model = at_the_switch(game("avoid", "learner"))
+    assert model.pucks == [0, 0]
+    assert (model.picked_up, model.duration) == (0, 0.0)
+    for row in model.results():
+        counts = ("pucks", "sud", "t_a_intra", "t_a_inter", "t_p", "conflicts_intra", "conflicts_inter")
+        assert [row[name] for name in counts] == [0] * 7
+    for robot in model.robots:
+        assert robot.times() == ([0, 0], 0)
+        assert (robot.pucks, robot.conflicts) == (0, [0, 0])
+    learned = rows_of(model, "learning")
+    assert learned
+    model.play()
+    assert json.dumps(rows_of(model, "learning")) == json.dumps(learned)
+    began = [sum(row["swarm"] == k for row in rows_of(model, "game")) for k in (1, 2)]
+    assert [row["conflicts_intra"] + row["conflicts_inter"] for row in model.results()] == began
+
+
+@pytest.mark.parametrize("policies", ["attack,learner", "avoid,inter-learner,aggressive", "learner"])
+@pytest.mark.parametrize("end", [{}, {"puck_limit": 5, "duration": 600.0}, {"puck_limit": 500}])
+def test_times_and_pucks_of_the_measured_game_add_up(policies: str, end: dict[str, Any]) -> None:
+    model = play(game(*policies.split(","), **end))
+    measured = model.env.now - SWITCH
+    for robot in model.robots:
+        t_a, t_p = robot.times()
+        assert sum(t_a) + t_p == measured
+        assert min(*t_a, t_p) >= 0
+    for row in model.results():
+        assert row["t_a_intra"] + row["t_a_inter"] + row["t_p"] == pytest.approx(row["size"] * measured * 0.1)
+        assert row["duration"] == pytest.approx(measured * 0.1)
+    carried = sum(robot.carrying for robot in model.robots)
+    assert model.picked_up + model.carried_at_start == sum(model.pucks) + carried
+    assert model.pucks == [sum(robot.pucks for robot in members) for members in model.members]
+
+
+def test_an_action_under_way_is_split_at_the_switch() -> None:
+    model = at_the_switch(game("attack", "attack"))
+    acting = [robot for robot in model.robots if robot.state == "A"]
+    assert acting
+    model.env.run(until=SWITCH + 1)
+    # In its first period the action goes on unless it was over: nobody has begun one since.
+    going_on = [robot for robot in acting if sum(robot.conflicts) == 0 and robot.state == "A"]
+    assert going_on
+    for robot in going_on:
+        assert (sum(robot.times()[0]), robot.times()[1]) == (1, 0)
+
+
+# What is learned.
+
+
+@pytest.mark.parametrize("policy", ["learner", "inter-learner", "learner(rule='uniform-random')"])
+def test_after_the_switch_nothing_is_learned_or_explored(policy: str) -> None:
+    what = game("attack", policy)
+    model = at_the_switch(what)
+    learned = repr([describe(robot.policy) for robot in model.robots])
+    model.play()
+    assert repr([describe(robot.policy) for robot in model.robots]) == learned
+    played = [row for row in rows_of(model, "game") if row["swarm"] == 2]
+    assert len(played) > 30
+    assert all(math.isnan(row["reward"]) and math.isnan(row["q"]) for row in played)
+    taken = set()
+    for row in played:
+        arms = [
+            arm
+            for arm in describe(model.robots[row["robot"]].policy)
+            if arm["opponent"] == row["opponent_swarm"] and arm["count"] > 0
+        ]
+        best = max(arms, key=lambda arm: arm["q"])["action"] if arms else "flight"
+        assert row["action"] == best
+        taken.add((bool(arms), row["action"]))
+    assert (True, "flight") in taken
+
+
+def test_without_data_the_learned_action_is_flight() -> None:
+    """A learning too short for any conflict to be closed in it."""
+    what = game("attack", "learner", learning=0.1, actions=tuple(reversed(PRESETS["fitted"].actions())))
+    model = play(what)
+    assert all(arm["count"] == 0 for robot in model.members[1] for arm in describe(robot.policy))
+    actions = [row["action"] for row in rows_of(model, "game") if row["swarm"] == 2]
+    assert len(actions) > 50
+    assert set(actions) == {"flight"}
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_conflict_open_at_the_switch_gets_no_reward(seed: int) -> None:
+    model = play(game("attack", "learner"), seed)
+    learned = [row for row in rows_of(model, "learning") if row["swarm"] == 2]
+    last = {row["robot"]: row for row in sorted(learned, key=lambda row: row["start"])}
+    assert len(last) == 6
+    for row in learned:
+        is_open = row is last[row["robot"]]
+        assert math.isnan(row["reward"]) == math.isnan(row["q"]) == is_open
+        ends = row["start"] + row["t_a"] + row["t_p"]
+        assert ends == pytest.approx(LEARNING) if is_open else ends < LEARNING - 0.05
+    # And nobody's bandit counts it.
+    for robot in model.members[1]:
+        rewarded = sum(row["robot"] == robot.index for row in learned) - 1
+        assert sum(arm["count"] for arm in describe(robot.policy)) == rewarded
+
+
+def test_the_first_conflict_of_the_measured_game_rewards_nothing() -> None:
+    """It closes nothing: what was open at the switch is over and done with."""
+    model = play(game("attack", "learner"))
+    for robot in model.members[1]:
+        rows = [row for phase in ("learning", "game") for row in rows_of(model, phase)]
+        rows = sorted((row for row in rows if row["robot"] == robot.index), key=lambda row: row["start"])
+        for row, following in pairwise(rows):
+            ends = row["start"] + row["t_a"] + row["t_p"]
+            if row["phase"] == following["phase"]:
+                assert ends == pytest.approx(following["start"])
+            else:
+                assert ends == pytest.approx(LEARNING)
+                assert following["start"] >= LEARNING
+
+
+# How the phases end.
+
+
+def test_simpy_events_end_both_phases() -> None:
+    """Only the clock is wound; each phase ends at its instant, before anything else that happens then."""
+    model = GameModel(game("attack", "learner"), record="conflicts")
+    began = []
+    for _ in events(model):
+        if not began and model.phase == "game":
+            began.append(model.env.now)
+            assert sum(sum(robot.conflicts) for robot in model.robots) == 0
+    assert began == [SWITCH]
+    assert (model.env.now, model.ended) == (SWITCH + 600, "time")
+
+
+@pytest.mark.parametrize(
+    ("learning", "period", "switch"), [(10.0, 0.1, 100), (9.97, 0.1, 100), (0.3, 0.1, 3), (10.0, 0.05, 200)]
+)
+def test_learning_takes_whole_periods(learning: float, period: float, switch: int) -> None:
+    parameters = PRESETS["fitted"].replace(period=period)
+    model = play(game("avoid", "learner", learning=learning, duration=1.0, parameters=parameters))
+    assert model.env.now == switch + round(1 / period)
+    assert (model.duration, model.ended) == (1.0, "time")
+
+
+def test_a_puck_limit_counts_from_the_switch() -> None:
+    limit = 4
+    unlimited = play(game("avoid", "learner", learning=LEARNING, duration=600.0))
+    deposited = play(game("avoid", "learner", learning=0.1, duration=LEARNING - 0.1))
+    assert sum(deposited.pucks) > limit  # it would end in the learning if those counted
+    model = play(game("avoid", "learner", duration=600.0, puck_limit=limit))
+    assert (sum(model.pucks), model.ended) == (limit, "pucks")
+    assert SWITCH < model.env.now < unlimited.env.now
+    capped = play(game("avoid", "learner", duration=5.0, puck_limit=limit))
+    assert sum(capped.pucks) < limit
+    assert (capped.ended, capped.duration) == ("cap", 5.0)
+
+
+def test_samples_show_both_phases() -> None:
+    model = GameModel(game("avoid", "learner"), record="model", sample_period=10.0)
+    model.play()
+    frame = model.datacollector.get_model_vars_dataframe()
+    assert frame["time"].tolist() == [10.0 * k for k in range(19)]
+    pucks = (frame["pucks_1"] + frame["pucks_2"]).tolist()
+    assert pucks[11] > 0
+    assert pucks[12] == 0
+    for part in (pucks[:12], pucks[12:]):
+        assert part == sorted(part)
+
+
+# The same again.
+
+
+@pytest.mark.parametrize(
+    "policies", ["attack,learner", "avoid,inter-learner(rule='uniform-random')", "learner,random"]
+)
+def test_same_seed_same_bytes(policies: str) -> None:
+    swarms = {"n": 12, "policies": policies, "learning": 60.0, "duration": 30.0}
+    runs = [ForagingModel(**swarms, seed=seed, record="conflicts,robots,trajectory") for seed in (4, 4, 5)]
+    for model in runs:
+        model.play()
+    assert everything(runs[0]) == everything(runs[1])
+    assert everything(runs[0]) != everything(runs[2])
+
+
+def test_sampling_does_not_change_what_is_learned() -> None:
+    what = game("attack", "learner")
+    seen = [GameModel(what, 2, record=record, sample_period=0.7) for record in ("", "model,agents,conflicts")]
+    for model in seen:
+        model.play()
+    learned = [[describe(robot.policy) for robot in model.robots] for model in seen]
+    assert repr(learned[0]) == repr(learned[1])
+    assert world(seen[0]) == world(seen[1])
+    assert seen[0].results() == seen[1].results()
+
+
+def test_a_swarm_alone_learns_among_four_actions() -> None:
+    actions = (
+        *ONE_AND_THE_SAME,
+        Action(name="fight", direction=TOWARDS, duration=1.0),
+        Action(name="long-fight", direction=TOWARDS, duration=3.0),
+    )
+    model = play(game("learner(reward='single-swarm')", size=12, actions=actions))
+    rows = rows_of(model, "learning")
+    assert {row["action"] for row in rows} == {action.name for action in actions}
+    for row in rows:
+        expected = row["active"] / 8 * (row["t_p"] - 3 * row["t_a"])
+        assert row["reward"] == pytest.approx(expected, abs=1e-9) or math.isnan(row["reward"])
+    shares = {row["action"]: row["share"] for row in policy_rows(model)}
+    assert set(shares) == {action.name for action in actions}
+    assert sum(shares.values()) == pytest.approx(1.0)
+
+
+def test_the_shares_of_what_was_learned_are_those_of_the_robots() -> None:
+    model = play(game("avoid", "learner", "inter-learner+aggressive"), seed=1)
+    rows = {(row["swarm"], row["opponent"], row["action"]): row for row in policy_rows(model)}
+    pairs = [(2, 1), (2, 2), (2, 3), (3, 1), (3, 2)]
+    assert set(rows) == {(*pair, action) for pair in pairs for action in ("flight", "fight")}
+    for (swarm, opponent, action), row in rows.items():
+        policies = [robot.policy for robot in model.members[swarm - 1]]
+        learners = [policy for policy in policies if opponent - 1 in getattr(policy, "bandits", {})]
+        assert len(learners) == {2: 6, 3: 3}[swarm]
+        chosen = [policy.learned(opponent - 1).name for policy in learners]
+        assert row["share"] == chosen.count(action) / len(chosen)
+        assert row["attack_share"] == rows[swarm, opponent, "fight"]["share"]
