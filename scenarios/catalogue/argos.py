@@ -1,4 +1,4 @@
-"""The controller of the ARGoS measurements (reference/README.md), to compare the physics."""
+"""The controller of the ARGoS measurements, to compare the physics (docs/fidelity.md)."""
 
 from typing import Any, Final
 

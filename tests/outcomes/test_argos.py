@@ -7,7 +7,8 @@ import pandas as pd
 import pytest
 
 from analysis.fidelity import against_argos
-from scenarios.catalogue import ARGOS_DENSITIES, CATALOGUE
+from scenarios.catalogue import CATALOGUE
+from scenarios.catalogue.argos import DENSITIES
 from scenarios.description import Scenario
 from scenarios.runner import play_all
 from scenarios.runs import expand
@@ -32,7 +33,7 @@ def compared(scenarios: Iterable[Scenario], densities: tuple[int, ...], seeds: i
     params=[
         # N = 16 is where both demands on avoid against attack meet.
         pytest.param(((6, 16, 46), 8), id="8 seeds"),
-        pytest.param((ARGOS_DENSITIES, 20), id="20 seeds", marks=pytest.mark.full),
+        pytest.param((DENSITIES, 20), id="20 seeds", marks=pytest.mark.full),
     ],
 )
 def comparison(request: pytest.FixtureRequest) -> pd.DataFrame:

@@ -170,7 +170,7 @@ def exchange_draws(model: GameModel, exchange: Exchange, monkeypatch: pytest.Mon
     """Let all robots that draw from now on draw what their twins would."""
     n = model.game.size
     monkeypatch.setattr(
-        "agents.krembot.stream",
+        "agents.streams.stream",
         lambda seed, robot, purpose: Exchanged(
             exchange, stream(seed, exchange.twins(robot, n), purpose), purpose
         ),

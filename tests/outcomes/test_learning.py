@@ -48,7 +48,7 @@ class Sample(NamedTuple):
 
 
 # Among the few are the two densities at which a column is farthest off (by 15 and 20 points): over these six
-# cells any eight seeds measure errors of 6 to 8.5.
+# cells any eight seeds measure errors of 6 to 7.
 FEW = Sample((6, 30, 50), seeds=8, table_error=10.0)
 ALL = Sample(DENSITIES, seeds=20)
 # Scores of few robots vary most from seed to seed, and cost least.
