@@ -101,8 +101,8 @@ def make_world(game: Game, arena: Arena) -> Records:
     }
     for name, value in values.items():
         world[name] = value
-    # Two that meet head on close in by two strides in a period; relaxation may add as much again.
-    touching = 2 * radius + 4 * fastest
+    # Two that meet head on close in by two strides in a period; relaxation may move each by three more.
+    touching = 2 * radius + 8 * fastest
     world["pair_reach"] = np.maximum(world["conflict_reach"], touching) + world["skin"]
     farthest = np.maximum(world["flight_range"], world["active_range"])
     world["ring_reach"] = 2 * radius + farthest + world["skin"] / 2

@@ -81,6 +81,7 @@ def check_bodies(model: GameModel, before: np.ndarray[Any, Any]) -> None:
     if len(positions) > 1:
         assert pdist(positions).min() > 2 * body.radius - 1e-4
     assert np.abs(positions).max() <= model.arena.half - body.radius + ROUNDING
+    assert np.abs(model.fleet.robots["heading"]).max() <= np.pi + ROUNDING
     # Drive, shoves, and a wedge that gives way; a body that is flung farther passes through others.
     drive = max(max(swarm.drive, swarm.drive_action) for swarm in model.game.swarms)
     stride = drive * body.top_speed * model.game.parameters.period
@@ -118,7 +119,7 @@ def check_results(model: GameModel) -> None:
         assert played == pytest.approx(swarm.size * row["duration"], abs=1e-6)
         begun = row["conflicts_intra"] + row["conflicts_inter"]
         assert begun == sum(sum(robot.conflicts) for robot in members)
-        assert row["duration"] == model.env.now * period
+        assert row["duration"] == pytest.approx(model.env.now * period)
     assert {row["ended"] for row in rows} == {model.ended}
     if model.ended == "pucks":
         assert total == game.puck_limit

@@ -13,7 +13,7 @@ NO_OVERLAP = 1e-9
 """Bodies that overlap by less (m) just touch: how many are counted must not hang on the last bit."""
 PLAIN_PASSES = 3
 """Passes before momentum sets in."""
-MOMENTUM = 0.8
+MOMENTUM = 0.5
 """Part of a body's last correction that is added to the next."""
 ROUNDS = 50
 WATCHED_GAP = 0.1

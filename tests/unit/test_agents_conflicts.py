@@ -64,10 +64,10 @@ def test_a_flight_turns_to_the_most_vacant_direction(scene: Scene) -> None:
 
 
 def test_a_conflict_is_logged_as_it_was_at_its_start(scene: Scene) -> None:
-    # Five robots within the active range of 0.30 m and one beyond, no wall.
+    # Four robots within the active range of 0.30 m and one within the flight range, no wall.
     ring = [(0.3 * math.cos(a), 0.3 * math.sin(a), a) for a in (0.0, 0.8, 1.6, 2.4, 3.2)]
     model = scene([(0.0, 0.1, 0.0)], [(x, y + 0.1, a) for x, y, a in ring], record="conflicts", duration=30.0)
-    model.robots[1].position = np.array([0.5, 0.9])
+    model.robots[1].position = np.array([0.0, 0.1 - 0.17 - 0.38])
     model.env.run()
     assert (
         conflicts(model)[0].items()
@@ -177,10 +177,12 @@ def test_another_robot_ahead_interrupts_an_action_only_if_asked_to(scene: Scene,
     assert model.fleet.opponent[0] == (2 if preempt else 1)
     assert model.robots[0].conflicts == [0, 2 if preempt else 1]
     assert [(c["t_a"], c["t_p"]) for c in conflicts(model)] == ([(10, 0)] if preempt else [])
-    # What the interrupted fight would have waited for passes without effect.
-    model.env.run(until=35)
-    if not preempt:
-        assert sum(model.robots[0].t_a) >= 30
+    if preempt:
+        # The end of the fight that was interrupted, due at 30, passes without effect on the second one.
+        model.robots[1].position = np.array([-0.5, -0.5])
+        model.env.run(until=38)
+        assert model.robots[0].state == "A"
+        assert model.robots[0].t_a == [0, 10]
 
 
 def test_an_interrupted_turn_has_no_end(scene: Scene) -> None:
