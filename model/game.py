@@ -114,8 +114,8 @@ class Game(Checked):
     def _check_room(self) -> None:
         parameters, body, n = self.parameters, self.body_preset, self.size
         room = (self.side - 2 * parameters.wall_clearance) ** 2
-        if n * math.pi * (body.radius + parameters.clearance / 2) ** 2 > 0.54 * room:
-            # Discs put down at random, one after the other, jam when they cover 54.7 % of the ground.
+        if n * math.pi * (body.radius + parameters.clearance / 2) ** 2 > 0.7 * room:
+            # Discs that are put down at random and parted jam when they cover about 80 % of the ground.
             raise InputError(
                 "n", n, f"robots of radius {body.radius} m do not fit in a square of {self.side} m"
             )

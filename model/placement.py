@@ -1,15 +1,22 @@
-"""Where robots start: uniformly at random, without overlap (specification, section 3.1)."""
+"""Where robots start: uniformly at random, without overlap (specification, section 3.1).
+
+Each robot takes the first free place that it draws. In a crowd where it draws none, it takes the roomiest of
+the places drawn last, and in the end all are parted as wedged bodies are.
+"""
 
 import math
 from typing import Final
 
 import numpy as np
+from scipy.spatial.distance import pdist
 
 from agents.errors import InputError
 from agents.fleet import Floats
 from agents.streams import Purpose, stream
+from model.contacts import TOLERANCE, relax
+from model.world import PAIR, WORK
 
-_BATCHES: Final = (16, 256, *(4096,) * 500)
+_BATCHES: Final = (16, 256, 4096, 4096)
 """Places tried at a time: few at first, many where room is scarce."""
 
 
@@ -45,16 +52,37 @@ def start_poses(
     headings = np.empty(n)
     limit = half - radius - wall_clearance
     apart = (2 * radius + clearance) ** 2
+    crowded = False
     for robot in range(n):
         draws = stream(seed, robot, Purpose.POSITION)
         for batch in _BATCHES:
             places = draws.uniform(-limit, limit, size=(batch, 2))
             squares = ((places[:, None, :] - positions[None, :robot, :]) ** 2).sum(axis=2)
-            free = np.flatnonzero((squares >= apart).all(axis=1))
+            room = squares.min(axis=1, initial=np.inf)
+            free = np.flatnonzero(room >= apart)
             if len(free) > 0:
                 positions[robot] = places[free[0]]
                 break
         else:
-            raise InputError("n", n, f"robots of radius {radius} m find no place in a square of {2 * half} m")
+            positions[robot] = places[room.argmax()]
+            crowded = True
         headings[robot] = stream(seed, robot, Purpose.HEADING).uniform(-math.pi, math.pi)
+    if crowded:
+        _part(positions, limit, radius + clearance / 2)
+        if _nearest(positions) < 2 * radius + clearance:
+            raise InputError("n", n, f"robots of radius {radius} m find no place in a square of {2 * half} m")
     return positions, headings
+
+
+def _part(positions: Floats, limit: float, reach: float) -> None:
+    """Move places that are nearer to each other than twice `reach` apart, within ± `limit` (m)."""
+    n = len(positions)
+    pairs = np.zeros(n * (n - 1) // 2, dtype=PAIR)
+    pairs["first"], pairs["second"] = np.triu_indices(n, 1)
+    reach += TOLERANCE
+    relax(positions, reach, limit + reach, np.zeros(n, dtype=WORK), pairs, len(pairs))
+
+
+def _nearest(positions: Floats) -> float:
+    """Return the least distance between two places (m)."""
+    return float(pdist(positions).min())

@@ -118,9 +118,7 @@ def test_a_swarm_is_dealt_equal_shares_and_the_rest_to_the_first(policy: str, si
     assert deal(policy, size) == dealt.split()
 
 
-@pytest.mark.parametrize(
-    "policy", ["", "Avoid", "avoid,attack", "avoid+", "avoid+peace", "leaner"]
-)
+@pytest.mark.parametrize("policy", ["", "Avoid", "avoid,attack", "avoid+", "avoid+peace", "leaner"])
 def test_unknown_policies_are_refused(policy: str) -> None:
     with pytest.raises(InputError, match=r"policy='[^']*': must be one of avoid, attack, aggressive, random"):
         Game(swarms=(Swarm(policy=policy, size=2),))

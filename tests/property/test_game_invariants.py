@@ -59,8 +59,7 @@ def games(draw: st.DrawFn, swarms: st.SearchStrategy[int] = st.integers(1, 5)) -
         # A small robot at full drive covers more than half its radius in a period of 0.1 s.
         parameters=PRESETS["fitted"].replace(**draw(parameters(0.1 if body == "krembot-sim" else 0.05))),
         body=body,
-        # At random, robots of this size find no place in a square of 2 m from 75 on.
-        side=draw(st.sampled_from([2.0, 2.5])) if body == "krembot" or n <= 70 else 2.2,
+        side=draw(st.sampled_from([2.0, 2.5])),
         duration=draw(st.sampled_from([5.0, 30.0, 9.97])),
         puck_limit=draw(st.sampled_from([None, 1, 2])),
         supply=draw(st.sampled_from([None, 1, 4])),

@@ -98,7 +98,7 @@ def test_every_layout_has_an_arena(layout: str) -> None:
         ({"swarms": (AVOID,) * 3, "parameters": {"base_radius": 0.19}}, "base 3="),
         ({"swarms": (Swarm(policy="avoid", size=200),)}, "n=200: robots of radius 0.085 m do not fit"),
         (
-            {"side": 0.9, "parameters": {"station_radius": 0.05, "base_radius": 0.05}},
+            {"side": 0.8, "parameters": {"station_radius": 0.05, "base_radius": 0.05}},
             "n=20: robots of radius",
         ),
         ({"parameters": {"period": 0.5}}, "period=0.5: must be so short"),

@@ -55,3 +55,10 @@ def test_places_and_headings_are_uniform() -> None:
 def test_robots_without_room_are_refused() -> None:
     with pytest.raises(InputError, match=r"^n=9: robots of radius 0.2 m find no place in a square of 1.0 m$"):
         start_poses(9, 0, 0.5, 0.2, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_crowd_that_finds_no_room_at_random_is_parted(seed: int) -> None:
+    positions, _ = start_poses(80, seed, 1.0, RADIUS, CLEARANCE, WALL_CLEARANCE)
+    assert pdist(positions).min() >= 2 * RADIUS + CLEARANCE
+    assert np.abs(positions).max() <= 1.0 - RADIUS - WALL_CLEARANCE + 1e-12
