@@ -118,6 +118,8 @@ class Krembot(ContinuousSpaceAgent):
         """Action of the last conflict."""
         self._is_open = False
         """Whether a conflict waits to be closed."""
+        self._is_over = False
+        """Whether its game has ended."""
         self._active = 0
         """Sensors that were active when it began."""
         self._opponent_swarm = -1
@@ -146,7 +148,7 @@ class Krembot(ContinuousSpaceAgent):
     def times(self) -> tuple[list[int], int]:
         """Return T(a) by the opponent's swarm and T(p) up to now (periods)."""
         t_a, t_p = self.t_a.copy(), self.t_p
-        running = int(self._env.now) - self._since
+        running = 0 if self._is_over else int(self._env.now) - self._since
         if self._phase[self.index] == ACTION:
             t_a[self._opponent_swarm] += running
         else:
@@ -282,6 +284,12 @@ class Krembot(ContinuousSpaceAgent):
         if self._learn is not None:
             self._learn = None
             cast(Learner, self.policy).freeze()
+
+    def finish(self, now: int) -> None:
+        """End the game: what was set to happen later does not."""
+        self.close(now, learn=False)
+        self._timer = None
+        self._is_over = True
 
     def _vacant_direction(self, vacant: int) -> float:
         """Return the angle of the most vacant sensor from the heading (rad), ties broken at random."""

@@ -9,11 +9,21 @@ from typing import TYPE_CHECKING, Any, Final
 
 from agents.actions import AWAY, Action
 from agents.errors import InputError
+from agents.validation import Checked
 
 if TYPE_CHECKING:
     from agents.policies import Setting
 
 _FORMAT: Final = "kswarms-policies-1"
+
+
+class _SavedArm(Checked):
+    opponent: int
+    action: str
+    reward: float
+    time: float
+    count: float
+    q: float | None
 
 
 class LearnedPolicy:
@@ -68,7 +78,7 @@ class LearnedPolicy:
 def _best_actions(arms: Sequence[Mapping[str, Any]], by_name: Mapping[str, Action]) -> dict[int, Action]:
     best: dict[int, Mapping[str, Any]] = {}
     for arm in arms:
-        if arm["count"] > 0:
+        if arm["q"] is not None:
             opponent = arm["opponent"] - 1
             if opponent not in best or arm["q"] > best[opponent]["q"]:
                 best[opponent] = arm
@@ -120,4 +130,5 @@ def _load(path: Path, _changed: int) -> dict[str, Any]:
     saved: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     if saved["format"] != _FORMAT or not saved["robots"]:
         raise ValueError(f"not of the form {_FORMAT}")
-    return saved
+    robots = [[_SavedArm(**arm).model_dump() for arm in arms] for arms in saved["robots"]]
+    return {"swarm": int(saved["swarm"]), "robots": robots}

@@ -126,6 +126,8 @@ class GameModel(mesa.Model):
         self.picked_up = 0
         self.carried_at_start = 0
         self.ended = ""
+        self._stopped: int | None = None
+        self._sampled_end = False
         self._populate()
         self._swarm_of: list[int] = self.fleet.swarm.tolist()
         self._kernel = Kernel(game, self.arena, self.fleet)
@@ -155,7 +157,8 @@ class GameModel(mesa.Model):
     @property
     def duration(self) -> float:
         """Seconds of the measured game so far."""
-        return self.habits.seconds(max(0, cast(int, self.env.now) - self._start))
+        now = cast(int, self.env.now) if self._stopped is None else self._stopped
+        return self.habits.seconds(max(0, now - self._start))
 
     @property
     def supply(self) -> list[int]:
@@ -165,7 +168,7 @@ class GameModel(mesa.Model):
     def step(self) -> None:
         """Play one sampling period and sample; after the end, only say that the model stopped."""
         if self.ended:
-            self.running = False
+            self._stop()
             return
         now = int(self.env.now)
         self.env.run(until=now - now % self._sample_every + self._sample_every)
@@ -179,6 +182,11 @@ class GameModel(mesa.Model):
             return
         if not self.ended:
             self.env.run()
+        self._stop()
+
+    def _stop(self) -> None:
+        """Say that the model stopped, and sample its end if the clock was run there by hand."""
+        if not self._sampled_end:
             self._collect()
         self.running = False
 
@@ -249,13 +257,15 @@ class GameModel(mesa.Model):
         self.carried_at_start = sum(robot.carrying for robot in self.robots)
 
     def _time_is_up(self, _: Event) -> None:
-        self._finish("time" if self.game.puck_limit is None else "cap")
+        if not self.ended:
+            self._finish("time" if self.game.puck_limit is None else "cap")
 
     def _finish(self, why: str) -> NoReturn:
         """End the game, and with it the run of the clock."""
         self.ended = why
         for robot in self.robots:
-            robot.close(cast(int, self.env.now), learn=False)
+            robot.finish(cast(int, self.env.now))
+        self._stopped = cast(int, self.env.now)
         raise StopSimulation(None)
 
     def _flush_conflicts(self) -> None:
@@ -265,11 +275,14 @@ class GameModel(mesa.Model):
 
     def _collect(self) -> None:
         self._flush_conflicts()
+        self._sampled_end = bool(self.ended)
         self.sample_times.append(self.time)
         self.datacollector.collect(self)
 
     def _move(self, _: Event) -> None:
         """Have the robots decide, move the bodies to the next decision or event, and wait for its instant."""
+        if self.ended:
+            return
         env, kernel = self.env, self._kernel
         now = cast(int, env.now)
         while True:

@@ -124,7 +124,7 @@ def test_times_are_those_seen_from_outside(monkeypatch: pytest.MonkeyPatch, pree
     model = GameModel(game("spy", preempt=preempt, learning=60.0), seed=1, sample_period=PERIOD)
     watched: dict[int, list[list[int]]] = {robot.index: [] for robot in model.members[1]}
     begun = dict.fromkeys(watched, 0)
-    while model.phase == "learning":
+    while model.phase == "learning" and not model.ended:
         model.step()
         for robot in model.members[1] if model.phase == "learning" else ():
             times = watched[robot.index]
@@ -138,7 +138,8 @@ def test_times_are_those_seen_from_outside(monkeypatch: pytest.MonkeyPatch, pree
     for robot in model.members[1]:
         closed = [call[1:3] for call in robot.policy.calls if call[0] == "learn"]
         seen = [(t_a * PERIOD, t_p * PERIOD) for t_a, t_p in watched[robot.index]]
-        assert len(seen) == len(closed) + 1
+        # The conflict open at the switch is told to nobody; one begun in the last period was not seen.
+        assert len(seen) - len(closed) in (0, 1)
         for ours, theirs in zip(seen, closed, strict=False):
             assert ours == pytest.approx(theirs, abs=1e-9)
         told += len(closed)
