@@ -3,6 +3,7 @@
 A reward is a frozen description with a method; a new one is a subclass of `Reward` under a name in `REWARDS`.
 """
 
+from abc import ABC, abstractmethod
 from typing import Annotated, Final
 
 from pydantic import Discriminator, Field, Tag
@@ -31,13 +32,14 @@ def sigma(inter: bool, direction: int) -> int:
     return direction if inter else -direction
 
 
-class Reward(Checked):
+class Reward(Checked, ABC):
     """Base of the rewards."""
 
     def opponents(self) -> frozenset[int]:
         """Return the swarm-IDs (from 1) that it names."""
         return frozenset()
 
+    @abstractmethod
     def of(self, t_a: float, t_p: float, n_active: int, direction: int, inter: bool, opponent: int) -> float:
         """Return R of a closed conflict (s).
 
@@ -54,7 +56,6 @@ class Reward(Checked):
         opponent : int
             Swarm-ID of the other robot, from 1.
         """
-        raise NotImplementedError
 
 
 class WLU(Reward):

@@ -4,6 +4,7 @@ A rule is a frozen description with a method; a new one is a subclass of `Rule` 
 """
 
 import math
+from abc import ABC, abstractmethod
 from typing import Final
 
 from numpy.random import Generator
@@ -16,7 +17,7 @@ FORGOTTEN: Final = 1e-12
 """An arm whose discounted count is less counts as never tried."""
 
 
-class Rule(Checked):
+class Rule(Checked, ABC):
     """Base of the selection rules: arms never tried come first, in random order."""
 
     @property
@@ -39,9 +40,9 @@ class Rule(Checked):
             return untried[_pick(len(untried), draws)]
         return self.prefer(bandit, draws)
 
+    @abstractmethod
     def prefer(self, bandit: Bandit, draws: Generator) -> int:
         """Return the arm to pull when all were tried."""
-        raise NotImplementedError
 
 
 class UCB(Rule):
@@ -114,6 +115,10 @@ class UniformRandom(Rule):
     """Every arm with the same probability, whatever is known."""
 
     def choose(self, bandit: Bandit, draws: Generator) -> int:
+        """Return a random arm, also while some were never tried."""
+        return self.prefer(bandit, draws)
+
+    def prefer(self, bandit: Bandit, draws: Generator) -> int:
         """Return a random arm."""
         return _pick(len(bandit.count), draws)
 

@@ -7,8 +7,8 @@ everything else at their instant: they see the world as the last period left it.
 """
 
 import math
-from collections.abc import Callable, Mapping
-from typing import Any, Final, NoReturn, cast
+from collections.abc import Mapping
+from typing import Any, NoReturn, cast
 
 import mesa
 import numpy as np
@@ -24,41 +24,11 @@ from agents.krembot import Krembot
 from agents.policies import Setting, deal, make_policy
 from agents.streams import Streams
 from model import recording
+from model.clock import AFTER_TIMEOUTS, BEFORE_TIMEOUTS, Instant
 from model.game import Game
 from model.kernel import Kernel
 from model.percepts import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE
 from model.placement import start_poses
-
-_BEFORE_TIMEOUTS: Final = 0
-"""SimPy priority of the end of the game, as of the ends of `Environment.run`; timeouts have 1."""
-_AFTER_TIMEOUTS: Final = 2
-"""SimPy priority of the motion process."""
-
-
-class Instant(Event):
-    """An event that only happens, at a given priority among the events of its instant, and may do so again.
-
-    Parameters
-    ----------
-    env : simpy.Environment
-        The clock.
-    priority : int
-        0 comes before timeouts, 2 after them.
-    callback : callable
-        What is called with the event.
-    """
-
-    def __init__(self, env: simpy.Environment, priority: int, callback: Callable[[Event], None]) -> None:
-        super().__init__(env)
-        self._ok = True
-        self._value = None
-        self._priority = priority
-        self._callback = callback
-
-    def happen_in(self, delay: int) -> None:
-        """Schedule it, `delay` periods from now; it must have happened if it was scheduled before."""
-        self.callbacks = [self._callback]
-        self.env.schedule(self, self._priority, delay)  # type: ignore[arg-type]  # SimPy names only two of them
 
 
 class GameModel(mesa.Model):
@@ -139,9 +109,9 @@ class GameModel(mesa.Model):
         self.phase = "game"
         if self._start > 0:
             self.phase = "learning"
-            Instant(self.env, _BEFORE_TIMEOUTS, self._begin_game).happen_in(self._start)
-        Instant(self.env, _BEFORE_TIMEOUTS, self._time_is_up).happen_in(self._end)
-        self._motion = Instant(self.env, _AFTER_TIMEOUTS, self._move)
+            Instant(self.env, BEFORE_TIMEOUTS, self._begin_game).happen_in(self._start)
+        Instant(self.env, BEFORE_TIMEOUTS, self._time_is_up).happen_in(self._end)
+        self._motion = Instant(self.env, AFTER_TIMEOUTS, self._move)
         self._motion.happen_in(0)
         self._sample_every = self.habits.periods(sample_period)
         self._recorded = recorded

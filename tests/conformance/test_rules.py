@@ -187,7 +187,7 @@ class Lenient(Greedy):
     model_config = {"extra": "ignore"}
 
 
-class Unseeded(Rule):
+class Unseeded(Greedy):
     """Draws from a stream that is not the robot's."""
 
     def choose(self, bandit: Bandit, draws: Generator) -> int:
@@ -201,7 +201,7 @@ class OneTooFar(UniformRandom):
         return 1 + super().choose(bandit, draws)
 
 
-class First(Rule):
+class First(Greedy):
     """Takes the first arm, or the first of equals."""
 
     def choose(self, bandit: Bandit, draws: Generator) -> int:

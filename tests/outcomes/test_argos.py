@@ -66,4 +66,4 @@ def test_another_world_does_not_agree(scenario: str, change: str, n: int, verdic
     (condition,) = original.conditions
     changed = original.replace(conditions=(condition.replace(parameters=f"argos, {change}"),))
     frame = compared([changed], (n,), 20)
-    assert not frame[verdict].all(), frame.to_string()
+    assert not frame[verdict].any(), frame.to_string()
