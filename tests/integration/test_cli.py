@@ -12,9 +12,9 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from scenarios import cli
 from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.cli import invoke
+from scenarios.cli import run as run_command
 from scenarios.description import Scenario
 from scenarios.runner import RunError
 
@@ -244,11 +244,11 @@ def test_all_plays_what_the_densities_suit(
 ) -> None:
     played = []
 
-    def note(runs: list[cli.Run], *_rest: object) -> list[Path]:
+    def note(runs: list[run_command.Run], *_rest: object) -> list[Path]:
         played.extend((label[0], run.n) for run in runs for label in run.labels)
         return []
 
-    monkeypatch.setattr(cli, "_play", note)
+    monkeypatch.setattr(run_command, "_play", note)
     assert invoke(["run", "--all", "--densities", "6,13", "--seeds", "1", "--no-figures"]) == 0
     sizes = {name: {n for played_name, n in played if played_name == name} for name in CATALOGUE}
     exceptions = {"fig-6.15": {6, 13}, "fig-7.12": {13}, "fig-7.13a": {13}, "fig-7.13b": {13}}
@@ -268,7 +268,7 @@ def test_a_failing_run_and_a_full_disk_are_reported_and_nothing_is_written(
         def play(*_rest: object) -> None:
             raise error
 
-        monkeypatch.setattr(cli, "_play", play)
+        monkeypatch.setattr(run_command, "_play", play)
 
     fail(RunError("run n=6 seed=0 failed: ZeroDivisionError: division by zero"))
     assert invoke(["run", "fig-6.1a", *QUICK]) == 1

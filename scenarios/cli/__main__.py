@@ -1,0 +1,5 @@
+"""``python -m scenarios.cli`` is ``kswarms``."""
+
+from scenarios.cli.app import main
+
+main()

@@ -1,0 +1,93 @@
+"""The command line ``kswarms``: its commands, its errors and its exit status.
+
+Each command is a function in a module of this package; what takes long to import is imported by the command
+that needs it.
+"""
+
+import sys
+import traceback
+from collections.abc import Sequence
+from typing import Annotated, Final
+
+import typer
+
+from agents.errors import InputError
+from scenarios.cli.calibrate import calibrate
+from scenarios.cli.catalogue import list_scenarios, show
+from scenarios.cli.run import run
+from scenarios.runner import RunError
+from scenarios.runs import package_version
+
+INTERRUPTED: Final = 130
+
+app = typer.Typer(
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    help="Competing swarms of foraging robots: play the scenarios of the catalogue and see who wins.",
+    epilog="Example: kswarms run fig-6.1a --densities 6,30 --seeds 3",
+)
+
+
+def main() -> None:
+    """Run the command line and exit with its status."""
+    sys.exit(invoke())
+
+
+def invoke(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        The words after ``kswarms``; by default those that this process was started with.
+
+    Returns
+    -------
+    int
+        Exit status: 0 done, 1 failed, 2 bad input, 130 interrupted.
+    """
+    try:
+        status: int | None = app(arguments, prog_name="kswarms", standalone_mode=False)
+    except InputError as error:
+        return _complain(str(error), 2)
+    except RunError as error:
+        traceback.print_exception(error.__cause__)  # a fault of the program, not of its input
+        return _complain(str(error), 1)
+    except OSError as error:
+        return _complain(str(error), 1)
+    except typer.TyperException as error:  # typer's own complaints: an unknown command or option, no number
+        return _complain(error.format_message(), error.exit_code)
+    if status == INTERRUPTED:
+        return _complain("interrupted", status)
+    return status or 0
+
+
+def _complain(message: str, status: int) -> int:
+    typer.echo(f"kswarms: {' '.join(message.split())}", err=True)
+    return status
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"kswarms {package_version()}")
+        raise typer.Exit
+
+
+@app.callback(invoke_without_command=True)
+def _without_command(
+    context: typer.Context,
+    _version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
+
+app.command("list", epilog="Example: kswarms list")(list_scenarios)
+app.command(epilog="Example: kswarms show fig-6.1c")(show)
+app.command(epilog="Example: kswarms run fig-6.1a fig-6.1c --densities 6,30,50 --seeds 5")(run)
+app.command(epilog="Example: kswarms calibrate --free friction,gamma --densities 16,30,50 --seeds 2")(
+    calibrate
+)
