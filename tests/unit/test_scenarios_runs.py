@@ -127,11 +127,11 @@ def test_effort_grows_with_robots_time_learning_and_finer_periods() -> None:
     by_effort = [
         ("fig-6.1a", "", 6),
         ("fig-6.15", "flight-50ms", 6),
+        ("fig-6.2", "", 50),
         ("fig-6.4a", "", 6),
         ("fig-6.1a", "", 50),
+        ("fig-6.5a", "", 50),
         ("fig-6.4a", "", 50),
-        ("fig-6.2", "", 6),
-        ("fig-6.2", "", 50),
     ]
     efforts = []
     for name, condition, n in by_effort:
