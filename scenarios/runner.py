@@ -16,6 +16,9 @@ RECORDS: Final = ("conflicts", "robots", "trajectory")
 """Tables that a game can record, besides its results."""
 
 
+_GONE: Final = "the workers are gone before all was played"
+
+
 class RunError(RuntimeError):
     """A run, named in the message, could not be played to its end.
 
@@ -185,8 +188,10 @@ def sweep(
     if executor is not None:
         for run, result, seconds in play_through(executor, waiting, 2 * jobs, record):
             if result is None:
-                raise RunError("the workers are gone: what was played is kept")
+                raise RunError(_GONE)
             yield run, result, seconds
+        if waiting:
+            raise RunError(_GONE)
     elif min(jobs, len(runs)) <= 1:
         for run in waiting:
             yield run, *attempt(run, record, code_version())

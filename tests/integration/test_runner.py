@@ -9,7 +9,7 @@ import sys
 import time
 import weakref
 from collections.abc import Iterable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor
 from contextlib import closing
 from multiprocessing import active_children
 from pathlib import Path
@@ -239,8 +239,13 @@ def test_an_executor_that_gives_up_ends_the_sweep() -> None:
             future.set_running_or_notify_cancel()
             return future
 
-    with Gone(1) as executor, pytest.raises(RunError, match="the workers are gone"):
-        list(sweep(short("fig-6.1a"), executor=executor))
+    class Broken(ThreadPoolExecutor):
+        def submit(self, *_arguments: object, **_options: object) -> Future[object]:
+            raise BrokenExecutor
+
+    for kind in (Gone, Broken):
+        with kind(1) as executor, pytest.raises(RunError, match="the workers are gone"):
+            list(sweep(short("fig-6.1a"), executor=executor))
 
 
 def test_what_cannot_be_sent_back_is_a_failure() -> None:

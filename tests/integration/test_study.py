@@ -132,7 +132,7 @@ def test_ctrl_c_in_the_own_process_keeps_what_is_done(
     break_games(interrupt)
     assert invoke(RUN) == 130
     assert capsys.readouterr().err.splitlines() == INTERRUPTED
-    assert sessions("results")[0]["status"] == "interrupted"
+    assert sessions("results")[0]["status"] == "stopped: KeyboardInterrupt"
     assert len(set(pq.read_table("results/runs.parquet")["run"].to_pylist())) == 7
     assert invoke(RUN) == 0
     assert len(games) == 80 + 1
@@ -161,7 +161,7 @@ def test_ctrl_c_stops_the_workers_and_keeps_what_is_done() -> None:
     assert err.splitlines()[-2:] == INTERRUPTED
     done = set(pq.read_table("results/runs.parquet")["run"].to_pylist())
     assert 1 <= len(done) < 30
-    assert sessions("results")[0]["status"] == "interrupted"
+    assert sessions("results")[0]["status"] == "stopped: KeyboardInterrupt"
     assert invoke([*words, "--seeds", "2", "--jobs", "1", "--quiet"]) == 0
     assert sessions("results")[1]["runs"]["done before"] >= 1
     assert done <= set(pq.read_table("results/runs.parquet")["run"].to_pylist())
@@ -269,6 +269,7 @@ def test_tables_without_their_ledger_are_not_replaced(
         f"kswarms: out='results': has a {foreign} but no ledger.sqlite; name another\n"
     )
     assert Path("results", foreign).read_text() == "my jogging diary"
+    assert [path.name for path in Path("results").iterdir()] == [foreign]
 
 
 def test_a_ledger_of_something_else_is_refused_and_left_alone(capsys: pytest.CaptureFixture[str]) -> None:
@@ -302,6 +303,7 @@ def test_a_curve_described_otherwise_is_refused(capsys: pytest.CaptureFixture[st
     refusal = "out='results': has runs of a tiny described otherwise; name another, or give it another id"
     assert capsys.readouterr().err == f"kswarms: {refusal}\n"
     assert contents("results") == before
+    assert len(sessions("results")) == 1
     Path("tiny.toml").write_text(TINY.replace(conditions=longer, id="longer").to_toml())
     assert invoke(RUN) == 0
     assert set(pq.read_table("results/runs.parquet")["scenario"].to_pylist()) == {"tiny", "longer"}
@@ -442,6 +444,10 @@ def test_a_replay_that_differs_is_told(
     printed = capsys.readouterr()
     assert printed.err == "kswarms: results has other results of it: they were played by other code\n"
     assert "pucks=99" in printed.out
+    with Study(Path("results")) as study:
+        (missing,) = study.plan([TINY.replace(densities=(8,), seeds=1, conditions=TINY.conditions[:1])])
+    assert invoke(["replay", "results", missing.digest]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == "results has no results of it"
     assert invoke(["replay", "results", "0" * 16]) == 2
     assert capsys.readouterr().err.startswith(f"kswarms: run='{'0' * 16}': must be a run of results: see ")
 
