@@ -7,7 +7,7 @@ Swarm-IDs count from 1 here, as users write them.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
+from itertools import combinations
 from typing import Final
 
 import networkx as nx
@@ -217,10 +217,10 @@ def polymatrix(forms: Mapping[tuple[int, int], NormalForm]) -> nx.Graph:
     InputError
         If the game of a pair is missing, or a swarm has different actions in two games.
     """
-    swarms = sorted({swarm for pair in forms for swarm in pair})
-    needed = {(k, m) for k, m in product(range(1, len(swarms) + 1), repeat=2) if k < m}
-    if not needed <= set(forms) <= needed | {(k, k) for k in range(1, len(swarms) + 1)}:
-        raise InputError("forms", sorted(forms), f"must have a game for each of {sorted(needed)}")
+    swarms = range(1, len({swarm for pair in forms for swarm in pair}) + 1)
+    needed = set(combinations(swarms, 2))
+    if not forms or not needed <= set(forms) <= needed | {(k, k) for k in swarms}:
+        raise InputError("forms", sorted(forms), "must have one game for each pair k < m of the swarms 1 … K")
     graph = nx.Graph()
     for (k, m), form in sorted(forms.items()):
         for swarm, actions in ((k, form.rows), (m, form.columns)):

@@ -99,9 +99,10 @@ def test_the_measured_game_alone_is_measured_after_learning() -> None:
 
 
 def test_a_file_of_conflicts_gives_what_the_games_themselves_give(tmp_path: Path) -> None:
+    swarms = tuple(SwarmRule(policy=policy) for policy in ("avoid", "attack"))
     crowd = Scenario(
         id="crowd", title="A crowd", densities=(10, 16), seeds=1,
-        conditions=(Condition(swarms=(SwarmRule(policy="avoid"), SwarmRule(policy="attack")), duration=60.0),),
+        conditions=(Condition(swarms=swarms, duration=60.0),),
     )  # fmt: skip
     runs = expand([crowd])
     outcomes = [play(run, "conflicts") for run in runs]
