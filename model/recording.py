@@ -85,14 +85,21 @@ def _share_of_action(model: "GameModel", swarm: int) -> float:
 
 
 def add_conflicts(model: "GameModel", conflicts: Iterable[Conflict]) -> None:
-    """Write closed conflicts to the DataCollector's table, times in seconds, swarms counted from 1."""
+    """Write closed conflicts to the DataCollector's table, times in seconds, swarms counted from 1.
+
+    ``seen`` has a tuple for each swarm: the numbers of its robots that the sensors read, ascending.
+    """
     seconds = model.habits.seconds
     for c in conflicts:
+        seen = tuple(
+            tuple(sorted(j for j in c.seen if j >= 0 and model.robots[j].swarm == k))
+            for k in range(len(model.members))
+        )
         row = (
             *(model.phase, c.robot, model.robots[c.robot].swarm + 1),
             *(c.opponent, model.robots[c.opponent].swarm + 1),
             *(seconds(c.start), c.x, c.y, c.action.name, seconds(c.t_a), seconds(c.t_p), c.active),
-            *(c.seen, c.reward, c.value),
+            *(seen, c.reward, c.value),
         )
         model.datacollector.add_table_row("conflicts", dict(zip(_CONFLICT_COLUMNS, row, strict=True)))
 

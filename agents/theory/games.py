@@ -14,7 +14,8 @@ import networkx as nx
 import numpy as np
 
 from agents.errors import InputError
-from agents.theory.swarms import Floats, opponents_utility
+from agents.fleet import Floats
+from agents.theory.swarms import opponents_utility
 
 NATURE: Final = "Nature"
 OWN: Final = "own"
@@ -231,7 +232,7 @@ def polymatrix(forms: Mapping[tuple[int, int], NormalForm]) -> nx.Graph:
     return graph
 
 
-def is_zero_sum_between(graph: nx.Graph) -> bool:
+def is_pairwise_zero_sum(graph: nx.Graph) -> bool:
     """Tell whether every game between two swarms of a polymatrix game is zero-sum (Eq. 3.1)."""
     return all(form.is_zero_sum() for k, m, form in graph.edges(data="form") if k != m)
 

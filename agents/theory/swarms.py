@@ -8,11 +8,11 @@ from collections.abc import Sequence
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from agents.errors import InputError
+from agents.fleet import Floats
 
-Floats = NDArray[np.float64]
 _Utility = TypeVar("_Utility", int, float)
 _Numbers = TypeVar("_Numbers", float, Floats)
 

@@ -13,8 +13,8 @@ from agents.theory.games import (
     exact_potential,
     extensive_form,
     fold,
+    is_pairwise_zero_sum,
     is_potential,
-    is_zero_sum_between,
     polymatrix,
     swarm_payoffs,
     zero_sum,
@@ -124,8 +124,8 @@ def test_the_polymatrix_game_has_loops_within_and_edges_between_swarms() -> None
     assert sorted(map(sorted, graph.edges)) == [[1, 1], [1, 2], [2, 2]]
     assert nx.number_of_selfloops(graph) == 2
     assert graph.nodes[2] == {"actions": ACTIONS}
-    assert is_zero_sum_between(graph)
-    assert not is_zero_sum_between(polymatrix({(1, 2): DILEMMA}))
+    assert is_pairwise_zero_sum(graph)
+    assert not is_pairwise_zero_sum(polymatrix({(1, 2): DILEMMA}))
 
 
 def test_payoffs_of_swarms_that_act_as_one() -> None:
