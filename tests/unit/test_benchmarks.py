@@ -68,14 +68,14 @@ def test_the_bare_loop_processes_what_it_is_asked_to(monkeypatch: pytest.MonkeyP
     assert len(made) == 100
 
 
-def test_main_prints_five_tables(
+def test_main_prints_a_table_for_each_cost(
     sleepless: None, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     real = bench.overhead
     monkeypatch.setattr(bench, "overhead", lambda runs, _jobs: real(runs, 1))  # spares it the processes
     bench.main(seeds=1, repetitions=1, duration=60.0, sizes=(6, 24), runs=20)
     printed = capsys.readouterr().out
-    assert printed.count("  bound") == 5
+    assert printed.count("  bound") == 6
     ((n, side, *_),) = [line.split() for line in printed.splitlines() if line.startswith("  24 ")]
     assert (n, side) == ("24", "4.0")  # four times the robots on four times the area
 
