@@ -19,7 +19,7 @@ from scenarios.runs import Run, code_version, digest, package_version
 FILE: Final = "ledger.sqlite"
 """Name of the file in the directory of a study."""
 
-_FORMAT: Final = 1
+_FORMAT: Final = 1  # raise it with every change of these tables or of the columns in `scenarios.tables`
 _APPLICATION: Final = 0x6B73776D  # "kswm": by it a ledger is told from other SQLite files
 _TABLES: Final = """
 CREATE TABLE games (id INTEGER PRIMARY KEY, description TEXT NOT NULL UNIQUE);

@@ -44,7 +44,7 @@ def test_list_tells_what_a_scenario_takes_and_counts_shared_runs_once(
 ) -> None:
     invoke(["list"])
     sizes = {line.split()[0]: line.split()[1:4] for line in capsys.readouterr().out.splitlines()}
-    assert sizes["fig-6.1a"] == ["1", "200", "20.2"]  # s: 200 games × 600 s × 28 robots × 6 µs
+    assert sizes["fig-6.1a"] == ["1", "200", "16.8"]  # s: 200 games × 600 s × 28 robots × 5 µs
     assert sizes["fig-6.12"][:2] == ["6", "1,200"]
     assert sizes["table-6.1"][:2] == ["2", "400"]
     runs = expand(CATALOGUE.values())
