@@ -6,12 +6,12 @@ and 100 %. A single seed has no interval.
 """
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
 
 import pandas as pd
 from scipy import stats
 
 from agents.errors import InputError
+from analysis.printed import PrintedTable
 from analysis.published import learned_percentages
 
 CONFIDENCE = 0.95
@@ -87,15 +87,6 @@ def mean_absolute_error(cells: pd.DataFrame) -> float:
         As `learned` returns them.
     """
     return float(cells["error"].abs().mean())
-
-
-@dataclass(frozen=True)
-class PrintedTable:
-    """A table ready to be printed: its header, its rows of as many cells, and what stands below."""
-
-    header: list[str]
-    rows: list[list[str]]
-    caption: str
 
 
 def printed(cells: pd.DataFrame) -> PrintedTable:
