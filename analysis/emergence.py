@@ -120,6 +120,10 @@ def choices_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
     """
     swarms, robots = choices(conflicts), choices(conflicts, by=["robot"])
 
+    actions = sorted(set(swarms["action"]))
+    if len(actions) == 2:  # the other's share is the rest
+        swarms = swarms[swarms["action"] == actions[0]]
+
     def draw(axes: Axes, bandit: tuple[int, int]) -> None:
         _draw_over_time(axes, _of(robots, bandit), _of(swarms, bandit), "share")
         axes.set_ylim(-0.02, 1.02)
@@ -164,19 +168,24 @@ def _draw_over_time(axes: Axes, robots: pd.DataFrame, swarm: pd.DataFrame, quant
 
 
 def _panels(
-    rows: pd.DataFrame, draw: Callable[[Axes, tuple[int, int]], None], title: str, ylabel: str
+    rows: pd.DataFrame,
+    draw: Callable[[Axes, tuple[int, int]], None],
+    title: str,
+    ylabel: str,
+    xlabel: str = "time of learning (s)",
+    legend: str = "thick: the swarm, thin: its robots",
 ) -> Figure:
     """Draw a panel for each bandit: a swarm that learned about a swarm."""
     bandits = sorted({(int(swarm), int(opponent)) for swarm, opponent in rows[_BANDIT].to_numpy()})
     with sheet(title, width=max(7.5, 5.0 * len(bandits)), height=4.4) as figure:
         panels = figure.subplots(1, len(bandits), sharey=True, squeeze=False)[0]
         for axes, bandit in zip(panels, bandits, strict=True):
-            draw(axes, bandit)
             axes.set_title(_name(bandit))
-            axes.set_xlabel("time of learning (s)")
+            draw(axes, bandit)
+            axes.set_xlabel(xlabel)
             axes.set_ylabel(ylabel)
             axes.label_outer()
-        legend_below(figure, "thick: the swarm, thin: its robots")
+        legend_below(figure, legend)
     return figure
 
 
@@ -237,12 +246,13 @@ def preferences_figure(robots: pd.DataFrame, title: str = "") -> Figure:
     """
     rows = preferences(robots)
     robot = [name for name in ("run", "robot") if name in rows]
+    actions = sorted(set(rows["action"]))
 
     def draw(axes: Axes, bandit: tuple[int, int]) -> None:
         of_bandit = _of(rows, bandit)
         best = of_bandit[of_bandit["learned"]].drop_duplicates(robot).sort_values(["action", "q"])
         place = pd.Series(range(len(best)), index=pd.MultiIndex.from_frame(best[robot]))
-        for index, action in enumerate(sorted(set(of_bandit["action"]))):
+        for index, action in enumerate(actions):
             arm = of_bandit[of_bandit["action"] == action]
             axes.scatter(
                 place[pd.MultiIndex.from_frame(arm[robot])],
@@ -250,15 +260,18 @@ def preferences_figure(robots: pd.DataFrame, title: str = "") -> Figure:
                 color=CONDITION_COLOURS[index % len(CONDITION_COLOURS)],
                 marker=CONDITION_MARKERS[index % len(CONDITION_MARKERS)],
                 s=22,
-                label=f"{action}: best for {(best['action'] == action).mean():.0%}",
+                label=action,
             )
+        learned = best["action"].value_counts(normalize=True).sort_index()
+        shares = ", ".join(f"{action} {share:.0%}" for action, share in learned.items())
+        axes.set_title(f"{_name(bandit)}; best: {shares}")
         axes.set_xticks([])
-        axes.legend(loc="best")
 
-    bandits = rows[_BANDIT].drop_duplicates()
-    figure = _panels(bandits, draw, title, "Q at the end (reward a second)")
-    for legend in figure.legends:
-        legend.remove()
-    for axes in figure.axes:
-        axes.set_xlabel("robots, by what they learned and its Q")
-    return figure
+    return _panels(
+        rows,
+        draw,
+        title,
+        "Q at the end (reward a second)",
+        xlabel="robots, by their best action and its Q",
+        legend="each robot's arms, one above the other",
+    )

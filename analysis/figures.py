@@ -11,9 +11,22 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from agents.errors import InputError
-from analysis.drawing import DETAILED, Look, curves_of, draw_curves, page, scale_from_zero
+from analysis.drawing import (
+    DETAILED,
+    Form,
+    Look,
+    curves_of,
+    draw_curves,
+    draw_line,
+    form_of_condition,
+    legend_below,
+    page,
+    scale_from_zero,
+    sheet,
+)
 from analysis.pictures import save
 from analysis.results import read_runs
+from analysis.tables import named_columns
 
 
 def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "", look: Look = DETAILED) -> Figure:
@@ -121,6 +134,39 @@ def sud_over_n(
         axes.axhline(0, color="0.4", linewidth=1)
         draw_curves(axes, curves_of(rows, look), "sud", look)
         axes.set_ylabel(f"SUD of S{swarm} (pucks)")
+    return figure
+
+
+def learned_over_n(cells: pd.DataFrame, title: str = "") -> Figure:
+    """Draw what robots learned over the number of robots, with what was published as crosses.
+
+    Parameters
+    ----------
+    cells : pandas.DataFrame
+        As `analysis.tables.learned` returns them.
+    title : str
+        What they are of.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A curve for each scenario, condition, learning swarm and opponent with its 95 % interval; where the
+        source gives numbers, a cross of the same colour on a dotted line.
+    """
+    with sheet(title) as figure:
+        axes = figure.subplots()
+        for index, (name, column) in enumerate(named_columns(cells)):
+            form = form_of_condition(index)
+            axes.fill_between(column["n"], column["low"], column["high"], color=form.colour, alpha=0.2, lw=0)
+            draw_line(axes, column["n"], column["measured"], form, name)
+            if column["published"].notna().any():
+                published = Form(form.colour, ":", "x")
+                draw_line(axes, column["n"], column["published"], published, f"{name}, published")
+        axes.set_ylim(-3, 103)
+        axes.set_xticks(sorted(set(cells["n"])))
+        axes.set_xlabel("number of robots in all, N")
+        axes.set_ylabel("robots of the swarm (%)")
+        legend_below(figure, "learned, measured with its 95 % interval")
     return figure
 
 

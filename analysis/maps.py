@@ -4,7 +4,9 @@ from typing import Any, Protocol
 
 import numpy as np
 import pandas as pd
+from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
@@ -80,7 +82,7 @@ def heat_maps(
     Returns
     -------
     matplotlib.figure.Figure
-        A panel for all conflicts and one for each action, each with its own scale.
+        A panel for all conflicts and one for each action, of one logarithmic scale; black is none.
 
     Raises
     ------
@@ -96,23 +98,31 @@ def heat_maps(
         of_action = {action: conflicts[conflicts["action"] == action] for action in actions}
         kinds |= {f"{action}: {len(rows):,}": rows for action, rows in of_action.items()}
     games = conflicts["run"].nunique() if "run" in conflicts else 1
-    # Cells of one average are told apart by how many conflicts there are in a game, not in all.
-    with sheet(title, width=max(7.5, 4.4 * len(kinds)), height=5.2) as figure:
-        panels = figure.subplots(1, len(kinds), squeeze=False)[0]
+    # Logarithmic, or a corner in which two hold each other would leave the rest of the arena black.
+    norm = LogNorm(1 / games, max(density(conflicts, half).max(), 2 / games))
+    colours = colormaps["magma"].with_extremes(bad="black")
+    side = f"{100 * CELL:.0f}"
+    with sheet(title, width=max(5.5, 4.0 * len(kinds)), height=4.8) as figure:
+        panels = figure.subplots(1, len(kinds), squeeze=False, sharey=True)[0]
         for axes, (name, rows) in zip(panels, kinds.items(), strict=True):
             counts = density(rows, half) * (rows["run"].nunique() / games if "run" in rows else 1)
             image = axes.imshow(
-                counts, origin="lower", extent=(-half, half, -half, half), cmap="magma", interpolation="nearest"
+                np.ma.masked_equal(counts, 0),
+                norm=norm,
+                cmap=colours,
+                origin="lower",
+                extent=(-half, half, -half, half),
             )
             axes.set_title(name)
+            axes.set_xticks(np.linspace(-half, half, 5))
+            axes.set_yticks(np.linspace(-half, half, 5))
             axes.set_xlabel("x (m)")
             axes.set_ylabel("y (m)")
+            axes.label_outer()
             axes.grid(False)
             if places is not None:
                 _draw_places(axes, places, look)
-            figure.colorbar(
-                image, ax=axes, location="bottom", label=f"conflicts in {100 * CELL:.0f} × {100 * CELL:.0f} cm a game"
-            )
+        figure.colorbar(image, ax=panels, label=f"conflicts begun in {side} × {side} cm, a game")
     return figure
 
 

@@ -9,6 +9,9 @@ from collections.abc import Sequence
 import networkx as nx
 import numpy as np
 import pandas as pd
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
@@ -162,8 +165,8 @@ def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:
     if conflicts.empty:
         raise InputError("conflicts", "no rows", "must hold at least one conflict")
     start = conflicts["start"].to_numpy()
-    # A moment belongs to the conflicts with start ≤ moment < end. Moments are whole multiples of `every`; starts are
-    # of the control period, and rounding must not move one across a moment.
+    # A moment belongs to the conflicts with start ≤ moment < end. Moments are whole multiples of `every`, starts
+    # of the control period, and rounding must not carry one across a moment.
     first = np.ceil(start / every - 1e-9).astype(int)
     last = np.ceil((start + conflicts["t_a"].to_numpy()) / every - 1e-9).astype(int)
     origin, moments = first.min(), last.max() - first.min()
@@ -209,7 +212,7 @@ def network_figure(network: nx.Graph, title: str = "", look: Look = DETAILED) ->
     -------
     matplotlib.figure.Figure
         Left the network, the wider and darker an edge the longer the two met, grey within a swarm and black
-        between swarms; right the same numbers, robots in the same order (s).
+        between swarms; right the same times (s), logarithmic, robots in the same order; grey never met.
     """
     swarm = nx.get_node_attributes(network, "swarm")
     order = sorted(network, key=lambda robot: (swarm[robot], robot))
@@ -219,13 +222,13 @@ def network_figure(network: nx.Graph, title: str = "", look: Look = DETAILED) ->
         circle, matrix = figure.subplots(1, 2)
         places = nx.circular_layout(order)
         for kind, colour in (("intra", "0.55"), ("inter", "black")):
-            edges = [(a, b, time) for a, b, time in network.edges(data="time") if network[a][b]["kind"] == kind]
+            edges = [(a, b, met["time"]) for a, b, met in network.edges(data=True) if met["kind"] == kind]
             nx.draw_networkx_edges(
                 network,
                 places,
                 edgelist=[(a, b) for a, b, _ in edges],
-                width=[4 * time / most for *_, time in edges],
-                alpha=[0.1 + 0.6 * time / most for *_, time in edges],
+                width=[4 * (time / most) ** 0.5 for *_, time in edges],
+                alpha=[0.05 + 0.65 * time / most for *_, time in edges],
                 edge_color=colour,
                 ax=circle,
             )
@@ -237,14 +240,20 @@ def network_figure(network: nx.Graph, title: str = "", look: Look = DETAILED) ->
             circle.scatter(*spots.T, s=120, color=colour, edgecolors="white", zorder=3, label=f"S{name}")
         circle.set_axis_off()
         circle.set_aspect("equal")
-        image = matrix.imshow(times, cmap="viridis", origin="upper")
+        # Few pairs hold each other for long: a linear scale would show these alone.
+        least = times[times > 0].min()
+        image = matrix.imshow(
+            np.ma.masked_equal(times, 0),
+            cmap=colormaps["viridis"].with_extremes(bad="0.85"),
+            norm=LogNorm(least, max(most, 2 * least)),
+        )
         _name_swarms(matrix, [swarm[robot] for robot in order])
         figure.colorbar(image, ax=matrix, label="time of the two in conflict with each other, T(a) (s)")
         legend_below(figure)
     return figure
 
 
-def _name_swarms(axes, swarms: Sequence[int]) -> None:  # type: ignore[no-untyped-def]
+def _name_swarms(axes: Axes, swarms: Sequence[int]) -> None:
     """Name the swarms along both sides of a matrix whose robots lie swarm by swarm, and part them."""
     names = sorted(set(swarms))
     middles = [np.flatnonzero(np.array(swarms) == name).mean() for name in names]
@@ -277,7 +286,8 @@ def jams_figure(over_time: pd.DataFrame, title: str = "") -> Figure:
         axes.fill_between(
             time, over_time["jammed"], step="post", color="0.75", label=f"in jams of {SMALLEST_JAM} or more"
         )
-        axes.step(time, over_time["largest"], where="post", color="#D55E00", linewidth=1, label="in the largest cluster")
+        label = "in the largest cluster"
+        axes.step(time, over_time["largest"], where="post", color="#D55E00", linewidth=1, label=label)
         axes.set_xlabel("time (s)")
         axes.set_ylabel("robots")
         axes.set_ylim(bottom=0)
