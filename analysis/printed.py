@@ -4,7 +4,8 @@ The numbers themselves are the data frame that a table was printed from: `frame.
 """
 
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from html import escape
 
 # A number, or a mark that stands for one that is not there, with whatever follows: an interval, a unit.
@@ -23,11 +24,14 @@ class PrintedTable:
         As many cells each as there are names. The first cell names the row.
     caption : str
         What stands below: units, seeds, intervals.
+    marks : mapping of str to str
+        HTML class of cells with a certain text.
     """
 
     header: list[str]
     rows: list[list[str]]
     caption: str
+    marks: Mapping[str, str] = field(default_factory=dict)
 
     def numeric(self) -> list[bool]:
         """Tell for each column whether all its cells are numbers, which are aligned to the right."""
@@ -45,30 +49,34 @@ class PrintedTable:
 
     def to_html(self) -> str:
         """Return the table in HTML, its caption in it, with headings for columns and rows."""
-        classes = [' class="number"' if number else "" for number in self.numeric()]
-        heading = "".join(
-            f'<th scope="col"{kind}>{_html(name)}</th>'
-            for name, kind in zip(self.header, classes, strict=True)
-        )
-        body = "\n".join(_row(cells, classes) for cells in self.rows)
+        kinds = ["number" if number else "" for number in self.numeric()]
+        heading = "".join(map(_heading, self.header, kinds))
+        body = "\n".join(self._row(cells, kinds) for cells in self.rows)
         caption = f"<caption>{_html(self.caption)}</caption>\n" if self.caption else ""
         return f"<table>\n{caption}<thead><tr>{heading}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>\n"
 
+    def _row(self, cells: Sequence[str], kinds: Sequence[str]) -> str:
+        first = f'<th scope="row"{_class(kinds[0])}>{_html(cells[0])}</th>'
+        rest = (
+            f"<td{_class(self.marks.get(cell, kind))}>{_html(cell)}</td>"
+            for cell, kind in zip(cells[1:], kinds[1:], strict=True)
+        )
+        return f"<tr>{first}{''.join(rest)}</tr>"
 
-def _line(cells: list[str]) -> str:
-    # A bar would end the cell, a line break the table.
-    safe = [cell.replace("|", "\\|").replace("\n", " ") for cell in cells]
-    return f"| {' | '.join(safe)} |"
+
+def _heading(name: str, kind: str) -> str:
+    return f'<th scope="col"{_class(kind)}>{_html(name)}</th>'
 
 
-def _row(cells: list[str], classes: list[str]) -> str:
-    first, *rest = cells
-    first_class, *rest_classes = classes
-    data = "".join(
-        f"<td{kind}>{_html(cell)}</td>" for cell, kind in zip(rest, rest_classes, strict=True)
-    )
-    return f'<tr><th scope="row"{first_class}>{_html(first)}</th>{data}</tr>'
+def _class(kind: str) -> str:
+    return f' class="{kind}"' if kind else ""
 
 
 def _html(text: str) -> str:
     return escape(text).replace("\n", "<br>")
+
+
+def _line(cells: Sequence[str]) -> str:
+    # A bar would end the cell, a line break the table.
+    safe = [cell.replace("|", "\\|").replace("\n", " ") for cell in cells]
+    return f"| {' | '.join(safe)} |"

@@ -1,0 +1,139 @@
+"""The parts of the report about scenarios, their tables, and what findings became of them."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Final
+
+import pandas as pd
+
+from analysis import fidelity, figures, scores, tables
+from analysis.drawing import Look
+from analysis.findings import Verdict
+from analysis.printed import PrintedTable
+from analysis.report.page import Part, Tabled
+
+ARGOS: Final = "argos-"
+"""How the ids of scenarios begin that were also played in ARGoS."""
+
+_SHOWN: Final = {
+    ("pucks",): "pucks deposited by each swarm",
+    ("sud",): "Swarm Utility Difference of S2",
+    figures.TIME_SHARES: "shares of time in conflict",
+}
+
+
+def scenario_part(
+    runs: pd.DataFrame, policies: pd.DataFrame | None, scenario: str, title: str, missing: str, safe: bool
+) -> Part:
+    """Show a scenario: its figure in the source's form and in detail, its numbers, what its learners learned.
+
+    Parameters
+    ----------
+    runs : pandas.DataFrame
+        Rows of `runs.parquet`, some of the scenario.
+    policies : pandas.DataFrame or None
+        Rows of `policies.parquet`, if there are any.
+    scenario, title : str
+        Its id and what it is; the title may be empty.
+    missing : str
+        What the runs lack of the plan; empty for nothing.
+    safe : bool
+        Whether colours are those that the colour-blind tell apart.
+    """
+    part = Part(scenario, f"{scenario}: {title}" if title else scenario)
+    if missing:
+        part.text.append(f"Missing: {missing}.")
+    shown = _SHOWN[figures.quantities(scenario)]
+    frame = scores.scores(runs, scenario)
+    curves = ", ".join(dict.fromkeys(frame["curve"]))
+    alt = f"Line chart of the {shown} over the number of robots in all, for {curves}"
+    below = f"numbers in the table {scenario}.csv"
+    for look, form in (
+        (Look(safe, detail=False), "as in the source"),
+        (Look(safe), "with intervals and single seeds"),
+    ):
+        figure = figures.figure_of(runs, scenario, title, look)
+        part.show(figure, f"{alt}; {form}; {below}.", f"{shown[0].upper()}{shown[1:]}, {form}.")
+    part.tables.append(Tabled(scenario, f"Numbers of {scenario}", scores.printed(frame), frame))
+    if policies is not None and scenario in set(policies["scenario"]):
+        cells = tables.learned(policies, [scenario])
+        name = f"{scenario}-learned"
+        figure = figures.learned_over_n(cells, title)
+        alt = "Line chart of the share of robots that learned to attack others, or to flee within their swarm"
+        caption = "What robots learned; crosses: published." if cells["published"].notna().any() else "What robots learned."
+        part.show(figure, f"{alt}, over the number of robots in all; numbers in the table {name}.csv.", caption)
+        part.tables.append(Tabled(name, f"Learned in {scenario}", tables.printed(cells), cells))
+    return part
+
+
+def table_part(policies: pd.DataFrame, table: str, title: str, scenarios: Sequence[str]) -> Part:
+    """Show a table of the source, published beside measured where numbers are at hand."""
+    cells = tables.learned(policies, scenarios)
+    return Part(
+        table, f"{table}: {title}", tables=[Tabled(table, title, tables.printed(cells), cells)]
+    )
+
+
+def argos_parts(runs: pd.DataFrame) -> Iterator[tuple[str, Part]]:
+    """Yield the comparison with ARGoS, for the chapter of these scenarios, if any run can be compared."""
+    if not runs["scenario"].str.startswith(ARGOS).any():
+        return
+    frame = fidelity.against_argos(runs)
+    text = [
+        f"A mean score agrees within {fidelity.SCORE_TOLERANCE:.0%}, within {fidelity.PUCK_TOLERANCE} pucks, or "
+        "when the 95 % Welch interval of the difference holds 0; a mean share of time in conflict agrees within "
+        f"{fidelity.SHARE_TOLERANCE}.",
+        f"Scores agree in {frame['score_fits'].sum()} of {len(frame)} rows, shares of time in "
+        f"{frame['share_fits'].sum()}.",
+    ]
+    table = replace(fidelity.printed(frame), marks={"yes": "holds", "no": "fails"})
+    yield (
+        ARGOS,
+        Part(
+            "argos",
+            "Measured beside ARGoS",
+            text,
+            tables=[Tabled("argos", "The same games here and in ARGoS 3", table, frame)],
+        ),
+    )
+
+
+def verdicts_part(verdicts: Sequence[Verdict]) -> Part:
+    """Show what became of each finding, and how many there are of each verdict."""
+    frame = pd.DataFrame([vars(verdict) for verdict in verdicts])
+    counts = frame["verdict"].value_counts()
+    told = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
+    header = ["finding", "verdict", "effect (interval)", "unit", "seeds", "statement", "note"]
+    rows = [
+        [
+            verdict.finding,
+            verdict.verdict,
+            _effect(verdict),
+            verdict.unit,
+            str(verdict.seeds),
+            verdict.statement,
+            verdict.note,
+        ]
+        for verdict in verdicts
+    ]
+    marks = {name: name.replace(" ", "-") for name in counts.index}
+    marks |= {verdict.statement: "statement" for verdict in verdicts}
+    table = PrintedTable(header, rows, "", marks)
+    return Part(
+        "verdicts",
+        "Findings",
+        [
+            f"{len(verdicts)} findings at the seeds given: {told}.",
+            "A finding holds or fails where the interval of its effect lies on one side; it is undecided where it "
+            "does not, or where seeds or densities are missing.",
+        ],
+        tables=[Tabled("findings", "Findings and their verdicts", table, frame)],
+    )
+
+
+def _effect(verdict: Verdict) -> str:
+    if verdict.effect is None:
+        return "–"
+    ends = ["…" if end is None else f"{end:.3g}" for end in (verdict.low, verdict.high)]
+    interval = "" if verdict.low is None and verdict.high is None else f" ({ends[0]} … {ends[1]})"
+    return f"{verdict.effect:.3g}{interval}"
