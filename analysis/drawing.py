@@ -111,7 +111,7 @@ def curves_of(rows: pd.DataFrame, look: Look = DETAILED) -> list[Curve]:
 
 
 def form_of_condition(index: int, of_swarm: Form | None = None) -> Form:
-    """Return the form of a condition, from 0: its colour with the line and marker of a swarm, if one is given."""
+    """Return the form of a condition, from 0: its colour, with line and marker of a swarm if one is given."""
     colour = CONDITION_COLOURS[index % len(CONDITION_COLOURS)]
     if of_swarm is not None:
         return replace(of_swarm, colour=colour)
@@ -124,7 +124,7 @@ def brief(policy: str) -> str:
 
 
 def draw_curves(axes: Axes, curves: Sequence[Curve], quantity: str, look: Look = DETAILED) -> None:
-    """Draw a column of the curves' rows over `n`; in detail with the interval of its mean and the seeds as points."""
+    """Draw a column of the curves' rows over `n`, in detail with its mean's interval and the seeds."""
     densities = sorted({n for curve in curves for n in curve.rows["n"]})
     gap = min([_WIDEST_GAP, *(right - left for left, right in pairwise(densities))])
     for index, curve in enumerate(curves):
@@ -169,7 +169,7 @@ def scale_from_zero(axes: Axes, values: pd.Series) -> None:
 
 
 @contextmanager
-def sheet(heading: str, width: float = 7.5, height: float = 5.0) -> Iterator[Figure]:
+def sheet(heading: str, width: float = 7.0, height: float = 4.9) -> Iterator[Figure]:
     """Open a figure with a heading, of a size in inches, in the house's style."""
     with (
         sns.axes_style("whitegrid", rc={"grid.color": "0.9"}),
@@ -181,7 +181,7 @@ def sheet(heading: str, width: float = 7.5, height: float = 5.0) -> Iterator[Fig
 
 
 @contextmanager
-def page(rows: pd.DataFrame, heading: str, width: float = 7.5, look: Look = DETAILED) -> Iterator[Figure]:
+def page(rows: pd.DataFrame, heading: str, width: float = 7.0, look: Look = DETAILED) -> Iterator[Figure]:
     """Open a figure with a heading; when the caller has drawn its axes, put the legend below them.
 
     Parameters

@@ -1,7 +1,8 @@
 """How a policy emerges: choices and Q over the time of learning, and what each robot made of it in the end.
 
 Choices and Q are of rows of `conflicts.parquet`, or of the table of a model's DataCollector
-(`model.datacollector.get_table_dataframe("conflicts")`), of one game; what robots ended with is of `robots.parquet`.
+(`model.datacollector.get_table_dataframe("conflicts")`), of one game; what robots ended with is of
+`robots.parquet`.
 """
 
 from collections.abc import Callable, Sequence
@@ -54,9 +55,9 @@ def choices(conflicts: pd.DataFrame, by: Sequence[str] = ()) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        One row for each `swarm`, `opponent_swarm` (int64), column of `by`, `time` (float64, s: the middle of one of
-        `BINS` intervals) and `action` (str), with `share` (float64): its conflicts of all in that interval. An
-        interval without conflicts has no row.
+        One row for each `swarm`, `opponent_swarm` (int64), column of `by`, `time` (float64, s: the middle of
+        one of `BINS` intervals) and `action` (str), with `share` (float64): its conflicts of all in that
+        interval. An interval without conflicts has no row.
 
     Raises
     ------
@@ -67,7 +68,8 @@ def choices(conflicts: pd.DataFrame, by: Sequence[str] = ()) -> pd.DataFrame:
     rows = rows.assign(time=_middles(rows["start"]))
     key = [*_BANDIT, *by, "time"]
     counts = rows.groupby([*key, "action"]).size().unstack(fill_value=0)
-    return counts.div(counts.sum(axis=1), axis=0).stack().rename("share").reset_index()
+    shares = counts.div(counts.sum(axis=1), axis=0)
+    return shares.reset_index().melt(key, var_name="action", value_name="share")
 
 
 def values(conflicts: pd.DataFrame) -> pd.DataFrame:
@@ -81,9 +83,9 @@ def values(conflicts: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        One row for each `swarm`, `opponent_swarm`, `robot` (int64), `action` (str) and `time` (float64, s: the middle
-        of one of `BINS` intervals), with `q` (float64, reward a second): the last value by then. An arm has no
-        row before it was first tried.
+        One row for each `swarm`, `opponent_swarm`, `robot` (int64), `action` (str) and `time` (float64, s:
+        the middle of one of `BINS` intervals), with `q` (float64, reward a second): the last value by then.
+        An arm has no row before it was first tried.
 
     Raises
     ------
@@ -94,7 +96,7 @@ def values(conflicts: pd.DataFrame) -> pd.DataFrame:
     rows = rows.assign(time=_middles(rows["start"]))
     arms = [*_BANDIT, "robot", "action"]
     last = rows.groupby([*arms, "time"])["q"].last().unstack("time").ffill(axis=1)
-    return last.stack().rename("q").reset_index()
+    return last.reset_index().melt(arms, var_name="time", value_name="q").dropna(subset="q")
 
 
 def _middles(start: pd.Series) -> np.ndarray:
@@ -177,7 +179,7 @@ def _panels(
 ) -> Figure:
     """Draw a panel for each bandit: a swarm that learned about a swarm."""
     bandits = sorted({(int(swarm), int(opponent)) for swarm, opponent in rows[_BANDIT].to_numpy()})
-    with sheet(title, width=max(7.5, 5.0 * len(bandits)), height=4.4) as figure:
+    with sheet(title, width=max(7.0, 5.0 * len(bandits)), height=4.4) as figure:
         panels = figure.subplots(1, len(bandits), sharey=True, squeeze=False)[0]
         for axes, bandit in zip(panels, bandits, strict=True):
             axes.set_title(_name(bandit))
@@ -205,8 +207,9 @@ def preferences(robots: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        One row for each `run` (if `robots` have it), `swarm`, `opponent_swarm`, `robot` (int64) and `action` (str) that
-        was tried, with `q` (float64, reward a second) and `learned` (bool): whether it is the robot's best.
+        One row for each `run` (if `robots` have it), `swarm`, `opponent_swarm`, `robot` (int64) and `action`
+        (str) that was tried, with `q` (float64, reward a second) and `learned` (bool): whether it is the
+        robot's best.
 
     Raises
     ------

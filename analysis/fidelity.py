@@ -117,7 +117,7 @@ def printed(frame: pd.DataFrame) -> PrintedTable:
 
 
 def markdown_table(frame: pd.DataFrame) -> str:
-    """Write what `against_argos` returns as a Markdown table, a line for each row; a misfit is set in bold."""
+    """Write what `against_argos` returns as a Markdown table, a line for each row; misfits are bold."""
     return printed(frame).to_markdown().replace("| no |", "| **no** |")
 
 

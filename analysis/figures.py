@@ -3,7 +3,7 @@
 Figures are plain `matplotlib.figure.Figure` objects: no window opens and no global setting changes.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pandas as pd
@@ -137,7 +137,7 @@ def sud_over_n(
     return figure
 
 
-def learned_over_n(cells: pd.DataFrame, title: str = "") -> Figure:
+def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[str] = ()) -> Figure:
     """Draw what robots learned over the number of robots, with what was published as crosses.
 
     Parameters
@@ -146,6 +146,8 @@ def learned_over_n(cells: pd.DataFrame, title: str = "") -> Figure:
         As `analysis.tables.learned` returns them.
     title : str
         What they are of.
+    conditions : sequence of str
+        Conditions of another figure, in their order there, whose colours theirs are.
 
     Returns
     -------
@@ -155,8 +157,12 @@ def learned_over_n(cells: pd.DataFrame, title: str = "") -> Figure:
     """
     with sheet(title) as figure:
         axes = figure.subplots()
-        for index, (name, column) in enumerate(named_columns(cells)):
-            form = form_of_condition(index)
+        several = cells.groupby("condition")["opponent"].nunique().max() > 1
+        for place, (name, column) in enumerate(named_columns(cells)):
+            condition, opponent = column["condition"].iloc[0], column["opponent"].iloc[0]
+            index = list(conditions).index(condition) if len(conditions) > 1 else place
+            own = several and len(conditions) > 1
+            form = form_of_condition(index, DETAILED.of_swarm(opponent) if own else None)
             axes.fill_between(column["n"], column["low"], column["high"], color=form.colour, alpha=0.2, lw=0)
             draw_line(axes, column["n"], column["measured"], form, name)
             if column["published"].notna().any():
@@ -165,7 +171,9 @@ def learned_over_n(cells: pd.DataFrame, title: str = "") -> Figure:
         axes.set_ylim(-3, 103)
         axes.set_xticks(sorted(set(cells["n"])))
         axes.set_xlabel("number of robots in all, N")
-        axes.set_ylabel("robots of the swarm (%)")
+        learned = set(cells["learned"])
+        what = "to attack" if learned == {"attack"} else "flight within" if len(learned) == 1 else "so"
+        axes.set_ylabel(f"robots that learned {what} (%)")
         legend_below(figure, "learned, measured with its 95 % interval")
     return figure
 
@@ -175,16 +183,14 @@ _OF_SUD = (
     *("fig-6.10a", "fig-6.10b", "fig-6.12", "fig-6.14"),
     *("fig-7.4", "fig-7.6", "fig-7.8", "fig-7.10", "fig-7.11", "fig-7.19"),
 )
-_SHOWN_BY: Mapping[str, Callable[[pd.DataFrame, str, str, Look], Figure]] = {
-    "fig-6.3": time_shares,
-    **dict.fromkeys(_OF_SUD, sud_over_n),
-}
+_OF_TIME = ("fig-6.3",)
 
 
 def quantities(scenario: str) -> tuple[str, ...]:
     """Return what the figure of a scenario shows: `TIME_SHARES`, ``sud`` (of S2) or ``pucks``."""
-    shown = {time_shares: TIME_SHARES, sud_over_n: ("sud",)}
-    return shown.get(_SHOWN_BY.get(scenario, pucks_over_n), ("pucks",))
+    if scenario in _OF_SUD:
+        return ("sud",)
+    return TIME_SHARES if scenario in _OF_TIME else ("pucks",)
 
 
 def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", look: Look = DETAILED) -> Figure:
@@ -204,7 +210,8 @@ def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", look: Look = D
     InputError
         `runs` has no row of the scenario.
     """
-    return _SHOWN_BY.get(scenario, pucks_over_n)(runs, scenario, title, look)
+    shown = {("sud",): sud_over_n, TIME_SHARES: time_shares}.get(quantities(scenario), pucks_over_n)
+    return shown(runs, scenario, title, look)
 
 
 def draw(results_dir: Path, scenario_ids: Sequence[str], titles: Mapping[str, str]) -> list[Path]:

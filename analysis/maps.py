@@ -1,4 +1,4 @@
-"""Where in the arena conflicts happen: heat maps of rows of `conflicts.parquet`, or of a DataCollector's table."""
+"""Where conflicts happen: heat maps of rows of `conflicts.parquet`, or of a DataCollector's table."""
 
 from typing import Any, Protocol
 
@@ -54,13 +54,13 @@ def density(conflicts: pd.DataFrame, half: float = 1.0) -> np.ndarray:
     Returns
     -------
     ndarray of float64, shape (2 · half / CELL, 2 · half / CELL)
-        Conflicts in each cell in a game, on average over the games (by their column `run`, if there is one). Row i
-        is the i-th cell in y from below, column j the j-th in x from the left.
+        Conflicts in each cell in a game, on average over the games (by their column `run`, if there is one).
+        Row i is the i-th cell in y from below, column j the j-th in x from the left.
     """
     edges = np.linspace(-half, half, round(2 * half / CELL) + 1)
     counts, *_ = np.histogram2d(conflicts["y"], conflicts["x"], bins=(edges, edges))
     games = conflicts["run"].nunique() if "run" in conflicts else 1
-    return counts / max(games, 1)
+    return np.asarray(counts / max(games, 1))
 
 
 def heat_maps(
@@ -102,7 +102,7 @@ def heat_maps(
     norm = LogNorm(1 / games, max(density(conflicts, half).max(), 2 / games))
     colours = colormaps["magma"].with_extremes(bad="black")
     side = f"{100 * CELL:.0f}"
-    with sheet(title, width=max(5.5, 4.0 * len(kinds)), height=4.8) as figure:
+    with sheet(title, width=max(5.5, 4.0 * len(kinds)), height=4.4) as figure:
         panels = figure.subplots(1, len(kinds), squeeze=False, sharey=True)[0]
         for axes, (name, rows) in zip(panels, kinds.items(), strict=True):
             counts = density(rows, half) * (rows["run"].nunique() / games if "run" in rows else 1)
@@ -122,13 +122,15 @@ def heat_maps(
             axes.grid(False)
             if places is not None:
                 _draw_places(axes, places, look)
-        figure.colorbar(image, ax=panels, label=f"conflicts begun in {side} × {side} cm, a game")
+        figure.colorbar(image, ax=panels, shrink=0.8, label=f"conflicts begun in {side} × {side} cm, a game")
     return figure
 
 
 def _draw_places(axes: Axes, places: Places, look: Look) -> None:
     for station in places.stations:
-        axes.add_patch(Circle(tuple(station), places.station_radius, fill=False, color="white", linewidth=1.5))
+        axes.add_patch(
+            Circle(tuple(station), places.station_radius, fill=False, color="white", linewidth=1.5)
+        )
         axes.annotate("station", station, color="white", ha="center", va="center", fontsize="small")
     for index, base in enumerate(places.bases):
         colour = look.of_swarm(index + 1).colour

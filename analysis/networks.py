@@ -19,6 +19,9 @@ from scipy.sparse.csgraph import connected_components
 from agents.errors import InputError
 from analysis.drawing import DETAILED, Look, legend_below, sheet
 
+_SMOOTHED = 15
+"""Moments that a thick line of jams is the mean of."""
+
 SMALLEST_JAM = 3
 """Robots that hold each other up, from which on it is a jam: two are a conflict."""
 
@@ -34,9 +37,9 @@ def meeting_network(conflicts: pd.DataFrame) -> nx.Graph:
     Returns
     -------
     networkx.Graph
-        A node for each robot that began a conflict or was met in one, with its `swarm` (int, from 1); an edge for
-        each pair that met, with `meetings` (int): conflicts that either of the two began with the other, `time`
-        (float, robot-seconds): T(a) of these, and `kind` (str): ``intra`` or ``inter``.
+        A node for each robot that began a conflict or was met in one, with its `swarm` (int, from 1); an edge
+        for each pair that met, with `meetings` (int): conflicts that either of the two began with the other,
+        `time` (float, robot-seconds): T(a) of these, and `kind` (str): ``intra`` or ``inter``.
 
     Raises
     ------
@@ -79,11 +82,11 @@ def describe(network: nx.Graph) -> dict[str, float]:
     Returns
     -------
     dict of str to float
-        `robots`; `pairs` that met; `met`: pairs that met of all there are; `meetings`; `time` (robot-seconds in
-        conflict); `inter`: share of that time spent with other swarms; `degree`: others that a robot met, mean;
-        `strength` (s): time that a robot spent in meetings, begun by either side, mean; `assortativity` by
-        swarm-ID, of the pairs; `assortativity_time`, the same with pairs weighted by time; and `chance`: both,
-        had everybody met everybody alike, which is below 0 since nobody meets itself.
+        `robots`; `pairs` that met; `met`: pairs that met of all there are; `meetings`; `time` (robot-seconds
+        in conflict); `inter`: share of that time spent with other swarms; `degree`: others that a robot met,
+        mean; `strength` (s): time that a robot spent in meetings, begun by either side, mean; `assortativity`
+        by swarm-ID, of the pairs; `assortativity_time`, the same with pairs weighted by time; and `chance`:
+        both, had everybody met everybody alike, which is below 0 since nobody meets itself.
     """
     swarms = sorted(set(nx.get_node_attributes(network, "swarm").values()))
     sizes = np.array([sum(s == swarm for _, s in network.nodes(data="swarm")) for swarm in swarms], float)
@@ -118,8 +121,8 @@ def mixing_matrix(network: nx.Graph, weight: str | None) -> np.ndarray:
     Returns
     -------
     ndarray of float64, shape (K, K)
-        Symmetric; row and column k are the k-th of the swarms present. Each pair counts once from either side,
-        so that a row sums to what its swarm's robots had to do with anyone.
+        Symmetric; row and column k are the k-th of the swarms present. Each pair counts once from either
+        side, so that a row sums to what its swarm's robots had to do with anyone.
     """
     swarm = nx.get_node_attributes(network, "swarm")
     index = {name: k for k, name in enumerate(sorted(set(swarm.values())))}
@@ -151,9 +154,9 @@ def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        One row for each moment from the first start to the last end of a conflict: `time` (float64, s), `jams`
-        (int64): connected components of at least `SMALLEST_JAM` robots, `jammed` (int64): robots in these,
-        `largest` (int64): robots in the largest component, 0 without any conflict.
+        One row for each moment from the first start to the last end of a conflict: `time` (float64, s),
+        `jams` (int64): connected components of at least `SMALLEST_JAM` robots, `jammed` (int64): robots in
+        these, `largest` (int64): robots in the largest component, 0 without any conflict.
 
     Raises
     ------
@@ -165,14 +168,16 @@ def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:
     if conflicts.empty:
         raise InputError("conflicts", "no rows", "must hold at least one conflict")
     start = conflicts["start"].to_numpy()
-    # A moment belongs to the conflicts with start ≤ moment < end. Moments are whole multiples of `every`, starts
-    # of the control period, and rounding must not carry one across a moment.
+    # A moment belongs to the conflicts with start ≤ moment < end. Moments are whole multiples of `every`,
+    # starts of the control period, and rounding must not carry one across a moment.
     first = np.ceil(start / every - 1e-9).astype(int)
     last = np.ceil((start + conflicts["t_a"].to_numpy()) / every - 1e-9).astype(int)
     origin, moments = first.min(), last.max() - first.min()
     lengths = last - first
     edge = np.repeat(np.arange(len(conflicts)), lengths)
-    moment = np.arange(lengths.sum()) - np.repeat(np.cumsum(lengths) - lengths, lengths) + first[edge] - origin
+    moment = (
+        np.arange(lengths.sum()) - np.repeat(np.cumsum(lengths) - lengths, lengths) + first[edge] - origin
+    )
     robots = int(conflicts[["robot", "opponent"]].to_numpy().max()) + 1
     # One graph of (moment, robot), in which no edge joins two moments: components of all moments in one call.
     a = moment * robots + conflicts["robot"].to_numpy()[edge]
@@ -283,14 +288,14 @@ def jams_figure(over_time: pd.DataFrame, title: str = "") -> Figure:
     with sheet(title, width=11.0, height=4.2) as figure:
         axes = figure.subplots()
         time = over_time["time"]
-        axes.fill_between(
-            time, over_time["jammed"], step="post", color="0.75", label=f"in jams of {SMALLEST_JAM} or more"
-        )
-        label = "in the largest cluster"
-        axes.step(time, over_time["largest"], where="post", color="#D55E00", linewidth=1, label=label)
+        labels = {"jammed": f"in jams of {SMALLEST_JAM} or more", "largest": "in the largest cluster"}
+        for (quantity, label), colour in zip(labels.items(), ("#0072B2", "#D55E00"), strict=True):
+            axes.step(time, over_time[quantity], where="post", color=colour, linewidth=0.8, alpha=0.3)
+            smooth = over_time[quantity].rolling(_SMOOTHED, center=True, min_periods=1).mean()
+            axes.plot(time, smooth, color=colour, linewidth=2, label=label)
         axes.set_xlabel("time (s)")
         axes.set_ylabel("robots")
         axes.set_ylim(bottom=0)
         axes.margins(x=0)
-        legend_below(figure)
+        legend_below(figure, f"thin: at each moment, thick: mean of {_SMOOTHED} moments")
     return figure

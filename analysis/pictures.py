@@ -1,4 +1,4 @@
-"""Figures as files and as bytes: PNG and SVG, the same bytes for the same figure, written whole or not at all."""
+"""Figures as PNG and SVG: the same bytes for the same figure, in files written whole or not at all."""
 
 import os
 from io import BytesIO

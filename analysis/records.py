@@ -1,4 +1,4 @@
-"""Reading what games recorded, robot by robot and conflict by conflict: the runs that are wanted, and no more."""
+"""Reading what games recorded, robot by robot and conflict by conflict: of the wanted runs alone."""
 
 from collections.abc import Collection, Sequence
 from pathlib import Path
@@ -75,8 +75,8 @@ def read_robots(directory: Path, runs: Collection[str]) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        The columns `ROBOTS_COLUMNS`; `t_a`, `t_p` in s; `arms` an array of dicts with opponent, action, reward,
-        time, count and q.
+        The columns `ROBOTS_COLUMNS`; `t_a`, `t_p` in s; `arms` an array of dicts with opponent, action,
+        reward, time, count and q.
 
     Raises
     ------
@@ -92,6 +92,7 @@ def _read(path: Path, columns: Sequence[str], runs: Collection[str] | None = Non
         if missing:
             raise InputError("results", str(path), f"must have the missing columns {', '.join(missing)}")
         filters = None if runs is None else [("run", "in", set(runs))]
-        return pq.read_table(path, columns=list(columns), filters=filters).to_pandas()
+        rows: pd.DataFrame = pq.read_table(path, columns=list(columns), filters=filters).to_pandas()
     except (OSError, pa.ArrowException) as error:
         raise InputError("results", str(path), "must be a readable Parquet file") from error
+    return rows

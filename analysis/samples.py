@@ -1,7 +1,7 @@
 """One game over its time, from what a model's DataCollector holds: for notebooks.
 
-The frame is `model.datacollector.get_model_vars_dataframe()`: `time` (s) and for each swarm k `pucks_k`, `sud_k` and
-`share_a_k`.
+The frame is `model.datacollector.get_model_vars_dataframe()`: `time` (s) and for each swarm k `pucks_k`,
+`sud_k` and `share_a_k`.
 """
 
 import pandas as pd

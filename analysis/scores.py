@@ -1,4 +1,6 @@
-"""The numbers of a scenario's figure as a table: means over the seeds and their intervals, a row for each N."""
+"""The numbers of a scenario's figure as a table: means over the seeds and intervals, a row for each N."""
+
+from collections.abc import Hashable, Mapping
 
 import pandas as pd
 
@@ -24,9 +26,9 @@ def scores(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        One row for each `quantity` (str: ``pucks``, ``sud`` or a kind of time share), `curve` (str: its name in
-        the figure's legend) and `n` (int64), with `seeds` (int64), `mean`, `low`, `high` (float64): mean over
-        the seeds and its 95 % bootstrap interval, NaN where there is one seed.
+        One row for each `quantity` (str: ``pucks``, ``sud`` or a kind of time share), `curve` (str: its name
+        in the figure's legend) and `n` (int64), with `seeds` (int64), `mean`, `low`, `high` (float64): mean
+        over the seeds and its 95 % bootstrap interval, NaN where there is one seed.
 
     Raises
     ------
@@ -69,7 +71,7 @@ def printed(frame: pd.DataFrame) -> PrintedTable:
     return PrintedTable(header, [list(row) for row in zip(*columns, strict=True)], f"{unit}; {seeds}")
 
 
-def _cell(row: dict[str, float], digits: int) -> str:
+def _cell(row: Mapping[Hashable, float], digits: int) -> str:
     if pd.isna(row["mean"]):
         return "–"
     interval = "" if pd.isna(row["low"]) else f" ({row['low']:.{digits}f} … {row['high']:.{digits}f})"

@@ -1,8 +1,9 @@
 """Means over the seeds with bootstrap intervals: the numbers behind every curve and every table of one.
 
-The interval is the percentile bootstrap's (`scipy.stats.bootstrap`): the seeds of a point are drawn anew, with
-replacement, and the mean taken, a thousand times; its level is raised for few seeds as that of the findings
-(`analysis.statistics.bootstrap_interval`, which draws ten times as often, for a verdict hangs on it).
+The interval is the percentile bootstrap's (`scipy.stats.bootstrap`): the seeds of a point are drawn anew,
+with replacement, and the mean taken, a thousand times; its level is raised for few seeds as that of the
+findings (`analysis.statistics.bootstrap_interval`, which draws ten times as often, for a verdict hangs on
+it).
 """
 
 from collections.abc import Sequence

@@ -86,9 +86,9 @@ def report(
     covered = coverage(results.runs, plan)
     provenance = provenance_parts(directory)
     conflicts, robots = recorded_curves(directory, results.runs)
-    steps = [
+    steps: list[Step] = [
         partial(_verdicts, results, findings),
-        *_scenarios(results, plan, covered, safe),
+        *_scenarios(results, plan, source_tables, covered, safe),
         *_tables(results, source_tables),
         partial(argos_parts, results.runs),
         *(partial(conflict_parts, directory, curve, places_of, Look(safe)) for curve in conflicts),
@@ -116,21 +116,29 @@ def _verdicts(results: Results, findings: Sequence[Finding]) -> Iterator[tuple[s
 
 
 def _scenarios(
-    results: Results, plan: Mapping[str, Planned], covered: pd.DataFrame, safe: bool
+    results: Results,
+    plan: Mapping[str, Planned],
+    tables: Mapping[str, tuple[str, Sequence[str]]],
+    covered: pd.DataFrame,
+    safe: bool,
 ) -> Iterator[Step]:
     """Yield a step for each scenario that there are runs of, in the order of the plan."""
     missing = dict(zip(covered["scenario"], covered["missing"], strict=True))
+    tabulated = {scenario: table for table, (_, scenarios) in tables.items() for scenario in scenarios}
     present = dict.fromkeys(results.runs["scenario"])
-    for scenario in [*(name for name in plan if name in present), *(name for name in present if name not in plan)]:
+    for scenario in [name for name in plan if name in present] + [
+        name for name in present if name not in plan
+    ]:
         title = plan[scenario].title if scenario in plan else ""
-        yield partial(_scenario, results, scenario, title, missing.get(scenario, ""), safe)
+        table = tabulated.get(scenario, "")
+        yield partial(_scenario, results, scenario, title, missing.get(scenario, ""), table, safe)
 
 
 def _scenario(
-    results: Results, scenario: str, title: str, missing: str, safe: bool
+    results: Results, scenario: str, title: str, missing: str, table: str, safe: bool
 ) -> Iterator[tuple[str, Part]]:
     chapter = next(start for start in _OF_SCENARIOS if scenario.startswith(start))
-    yield chapter, scenario_part(results.runs, results.policies, scenario, title, missing, safe)
+    yield chapter, scenario_part(results, scenario, title, missing, table, safe)
 
 
 def _tables(results: Results, tables: Mapping[str, tuple[str, Sequence[str]]]) -> Iterator[Step]:
@@ -141,9 +149,7 @@ def _tables(results: Results, tables: Mapping[str, tuple[str, Sequence[str]]]) -
             yield partial(_table, results, table, title, scenarios)
 
 
-def _table(
-    results: Results, table: str, title: str, scenarios: Sequence[str]
-) -> Iterator[tuple[str, Part]]:
+def _table(results: Results, table: str, title: str, scenarios: Sequence[str]) -> Iterator[tuple[str, Part]]:
     assert results.policies is not None  # or there would be no step
     chapter = next((chapter for start, chapter in _OF_TABLES.items() if table.startswith(start)), "")
     yield chapter, table_part(results.policies, table, title, scenarios)
@@ -151,7 +157,9 @@ def _table(
 
 def _missing(covered: pd.DataFrame) -> Part:
     table = printed_coverage(covered)
-    return Part("missing", "What is missing", tables=[Tabled("coverage", "Games of each scenario", table, covered)])
+    return Part(
+        "missing", "What is missing", tables=[Tabled("coverage", "Games of each scenario", table, covered)]
+    )
 
 
 def _summary(results: Results, covered: pd.DataFrame) -> list[str]:
@@ -161,10 +169,10 @@ def _summary(results: Results, covered: pd.DataFrame) -> list[str]:
     complete = int((covered["missing"] == "").sum())
     some = int((covered["games"] > 0).sum())
     return [
-        f"{runs['run'].nunique():,} games with {few if few == many else f'{few} to {many}'} seeds at each density. "
-        f"Of {len(covered)} scenarios {complete} are here as planned and {some - complete} in part.",
-        "Each figure is shown in the form of the source and with the 95 % interval of each mean and the single "
-        "seeds; its numbers stand below it. Published numbers stand beside the measured ones wherever they are at hand.",
+        f"{runs['run'].nunique():,} games with {few if few == many else f'{few} to {many}'} seeds at each "
+        f"density. Of {len(covered)} scenarios {complete} are here as planned and {some - complete} in part.",
+        "Each figure is shown in the form of the source, then with the 95 % interval of each mean and the "
+        "single seeds; its numbers stand below it, and published ones beside them where they are at hand.",
     ]
 
 

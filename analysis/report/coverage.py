@@ -43,9 +43,9 @@ def coverage(runs: pd.DataFrame, plan: Mapping[str, Planned]) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        One row for each scenario of the plan, in its order: `scenario` (str), `games`, `planned` (int64): games that
-        there are and that it asks for, counted once for each curve; `missing` (str): what is not there, empty for
-        nothing. Games beside the plan, at other densities or seeds, do not count.
+        One row for each scenario of the plan, in its order: `scenario` (str), `games`, `planned` (int64):
+        games that there are and that it asks for, counted once for each curve; `missing` (str): what is not
+        there, empty for nothing. Games beside the plan, at other densities or seeds, do not count.
     """
     points = runs[["scenario", "condition", "n", "seed"]].drop_duplicates()
     rows = []
@@ -85,7 +85,7 @@ def _absent(wanted: Iterable[object], present: pd.Series) -> str:
 
 
 def printed(frame: pd.DataFrame) -> PrintedTable:
-    """Print what `coverage` returns, without the scenarios of which there is nothing: these go to the caption."""
+    """Print what `coverage` returns; scenarios of which there is nothing go to the caption."""
     absent = frame[frame["games"] == 0]["scenario"]
     partial = frame[(frame["games"] > 0) & (frame["missing"] != "")]
     rows = [

@@ -1,7 +1,7 @@
 """What a page of the report is made of, and the one file that it becomes.
 
-Chapters hold parts, parts hold text, pictures and tables. Everything is in the file: pictures and downloads are
-data URIs, there is no script and no address of another machine.
+Chapters hold parts, parts hold text, pictures and tables. Everything is in the file: pictures and downloads
+are data URIs, there is no script and no address of another machine.
 """
 
 import base64
@@ -61,7 +61,7 @@ class Tabled:
     @property
     def html(self) -> Markup:
         """The table for the page; its text is escaped."""
-        return Markup(self.printed.to_html())  # noqa: S704 - `to_html` escapes every cell
+        return Markup(self.printed.to_html())
 
     @property
     def downloads(self) -> dict[str, str]:
@@ -149,4 +149,6 @@ def write(path: Path, html: str) -> None:
     try:
         write_whole(path, html.encode())
     except OSError as error:
-        raise InputError("out", str(path), f"must be a file that can be written ({error.strerror})") from error
+        raise InputError(
+            "out", str(path), f"must be a file that can be written ({error.strerror})"
+        ) from error

@@ -1,4 +1,4 @@
-"""Where results and report come from: the manifest of a results directory, its files, and versions of libraries."""
+"""Where results and report come from: manifest and files of the directory, versions of libraries."""
 
 import hashlib
 import json

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+import numpy as np
 import pandas as pd
 
 from analysis import emergence, maps, networks
@@ -40,7 +41,8 @@ class Recorded:
 
     def densest(self) -> pd.DataFrame:
         """Return the games at the highest density, the first seeds."""
-        return self.games[self.games["n"] == self.games["n"].max()].head(GAMES)
+        dense: pd.DataFrame = self.games[self.games["n"] == self.games["n"].max()]
+        return dense.head(GAMES)
 
 
 def recorded_curves(directory: Path, runs: pd.DataFrame) -> tuple[list[Recorded], list[Recorded]]:
@@ -76,8 +78,11 @@ def conflict_parts(
     measured = dense[dense["phase"] == "game"]
     of_game = f"{curve.name}: N = {n}, seed {seed}"
     if not measured.empty:
-        yield "networks", _network_part(directory, curve, measured[measured["run"] == first["run"]], of_game, look)
-        yield "maps", _maps_part(curve, measured, places_of(curve.scenario, curve.condition, n, seed), look)
+        yield (
+            "networks",
+            _network_part(directory, curve, measured[measured["run"] == first["run"]], of_game, look),
+        )
+        yield "maps", _maps_part(curve, measured, places_of, look)
     if one["q"].notna().any():
         yield "emergence", _emergence_part(curve, one, of_game)
 
@@ -87,9 +92,9 @@ def _network_part(directory: Path, curve: Recorded, game: pd.DataFrame, of_game:
     if not game.empty:
         part.show(
             networks.network_figure(networks.meeting_network(game), f"{of_game}: who met whom", look),
-            f"Network and matrix of the time that each pair of robots spent in conflict with each other, {of_game}.",
-            f"Who met whom in the measured game, {of_game}: left, the wider and darker a line the longer two met; "
-            "right, the same times as a matrix, grey where two never met.",
+            f"Network and matrix of the time that each two robots spent in conflict with another, {of_game}.",
+            f"Who met whom in the measured game, {of_game}: left, the wider and darker a line the longer two "
+            "met; right, the same times as a matrix, grey where two never met.",
         )
         part.show(
             networks.jams_figure(networks.jams(game), f"{of_game}: jams"),
@@ -137,32 +142,40 @@ def _printed(frame: pd.DataFrame) -> PrintedTable:
         for row in frame.to_dict("records")
     ]
     caption = (
-        "of the measured game; degree: others that a robot met; strength: time that a robot spent in meetings; assortativity "
-        "by swarm-ID: 1 if robots met their own swarm alone, −1 if others alone; jams, robots in them and the largest "
-        "cluster: mean over the seconds"
+        "of the measured game; degree: others that a robot met; strength: time that a robot spent in them; "
+        "assortativity by swarm-ID: 1 if robots met their own swarm alone, −1 if others alone; jams, robots "
+        "in them and the largest cluster: mean over the seconds"
     )
     return PrintedTable([heading for heading, _ in columns.values()], rows, caption)
 
 
-def _maps_part(curve: Recorded, measured: pd.DataFrame, places: maps.Places | None, look: Look) -> Part:
+def _maps_part(curve: Recorded, measured: pd.DataFrame, places_of: PlacesOf, look: Look) -> Part:
     part = Part(f"map-{curve.id}", curve.name)
     dense = curve.densest()
-    random_stations = dense["seed"].nunique() > 1 and "random" in curve.scenario
     seeds = dense["seed"].nunique()
     of_games = f"{curve.name}: N = {dense['n'].iloc[0]}, {seeds} seed{'s' if seeds > 1 else ''}"
     part.show(
-        maps.heat_maps(measured, of_games, None if random_stations else places, look),
+        maps.heat_maps(measured, of_games, _common(curve, places_of), look),
         f"Heat maps of the places where conflicts began in the measured game, all and by action, {of_games}.",
         f"Where conflicts began in the measured game, all and by action, with their numbers; {of_games}.",
     )
     return part
 
 
+def _common(curve: Recorded, places_of: PlacesOf) -> maps.Places | None:
+    """Return the places of a curve's games, None where they differ or are not known."""
+    games = curve.densest()[["n", "seed"]].to_numpy().tolist()
+    first, *others = (places_of(curve.scenario, curve.condition, n, seed) for n, seed in games)
+    if first is None or not all(o is not None and np.array_equal(o.stations, first.stations) for o in others):
+        return None
+    return first
+
+
 def _emergence_part(curve: Recorded, one: pd.DataFrame, of_game: str) -> Part:
     part = Part(f"emergence-{curve.id}", curve.name)
     part.show(
         emergence.choices_figure(one, f"{of_game}: choices"),
-        f"Line chart of the share of an action among the choices of learners over the time of learning, {of_game}.",
+        f"Line chart of the share of an action among learners' choices over the time of learning, {of_game}.",
         f"Choices while learning, of all conflicts of the swarm and of each robot, {of_game}.",
     )
     part.show(

@@ -11,6 +11,7 @@ from analysis.drawing import Look
 from analysis.findings import Verdict
 from analysis.printed import PrintedTable
 from analysis.report.page import Part, Tabled
+from analysis.results import Results
 
 ARGOS: Final = "argos-"
 """How the ids of scenarios begin that were also played in ARGoS."""
@@ -22,21 +23,19 @@ _SHOWN: Final = {
 }
 
 
-def scenario_part(
-    runs: pd.DataFrame, policies: pd.DataFrame | None, scenario: str, title: str, missing: str, safe: bool
-) -> Part:
+def scenario_part(results: Results, scenario: str, title: str, missing: str, table: str, safe: bool) -> Part:
     """Show a scenario: its figure in the source's form and in detail, its numbers, what its learners learned.
 
     Parameters
     ----------
-    runs : pandas.DataFrame
-        Rows of `runs.parquet`, some of the scenario.
-    policies : pandas.DataFrame or None
-        Rows of `policies.parquet`, if there are any.
+    results : Results
+        Some of their runs are of the scenario.
     scenario, title : str
         Its id and what it is; the title may be empty.
     missing : str
         What the runs lack of the plan; empty for nothing.
+    table : str
+        The source's table of what it learned; empty for none.
     safe : bool
         Whether colours are those that the colour-blind tell apart.
     """
@@ -44,34 +43,45 @@ def scenario_part(
     if missing:
         part.text.append(f"Missing: {missing}.")
     shown = _SHOWN[figures.quantities(scenario)]
-    frame = scores.scores(runs, scenario)
+    frame = scores.scores(results.runs, scenario)
     curves = ", ".join(dict.fromkeys(frame["curve"]))
     alt = f"Line chart of the {shown} over the number of robots in all, for {curves}"
-    below = f"numbers in the table {scenario}.csv"
     for look, form in (
         (Look(safe, detail=False), "as in the source"),
         (Look(safe), "with intervals and single seeds"),
     ):
-        figure = figures.figure_of(runs, scenario, title, look)
-        part.show(figure, f"{alt}; {form}; {below}.", f"{shown[0].upper()}{shown[1:]}, {form}.")
+        part.show(
+            figures.figure_of(results.runs, scenario, title, look),
+            f"{alt}, {form}; the table of {scenario} has its numbers.",
+            f"{shown[0].upper()}{shown[1:]}, {form}.",
+        )
     part.tables.append(Tabled(scenario, f"Numbers of {scenario}", scores.printed(frame), frame))
-    if policies is not None and scenario in set(policies["scenario"]):
-        cells = tables.learned(policies, [scenario])
-        name = f"{scenario}-learned"
-        figure = figures.learned_over_n(cells, title)
-        alt = "Line chart of the share of robots that learned to attack others, or to flee within their swarm"
-        caption = "What robots learned; crosses: published." if cells["published"].notna().any() else "What robots learned."
-        part.show(figure, f"{alt}, over the number of robots in all; numbers in the table {name}.csv.", caption)
-        part.tables.append(Tabled(name, f"Learned in {scenario}", tables.printed(cells), cells))
+    if results.policies is not None and scenario in set(results.policies["scenario"]):
+        _add_learned(part, results, scenario, title, table)
     return part
+
+
+def _add_learned(part: Part, results: Results, scenario: str, title: str, table: str) -> None:
+    assert results.policies is not None
+    cells = tables.learned(results.policies, [scenario])
+    name = table or f"{scenario}-learned"
+    of_scenario = results.runs[results.runs["scenario"] == scenario]
+    conditions = list(dict.fromkeys(of_scenario["condition"]))
+    published = "; crosses: published" if cells["published"].notna().any() else ""
+    part.show(
+        figures.learned_over_n(cells, f"{scenario}: {title}" if title else scenario, conditions),
+        "Line chart of the share of robots that learned to attack others, or to flee within their swarm, "
+        f"over the number of robots in all; {name} has its numbers.",
+        f"What robots learned{published}; {name} has the numbers.",
+    )
+    if not table:
+        part.tables.append(Tabled(name, f"Learned in {scenario}", tables.printed(cells), cells))
 
 
 def table_part(policies: pd.DataFrame, table: str, title: str, scenarios: Sequence[str]) -> Part:
     """Show a table of the source, published beside measured where numbers are at hand."""
     cells = tables.learned(policies, scenarios)
-    return Part(
-        table, f"{table}: {title}", tables=[Tabled(table, title, tables.printed(cells), cells)]
-    )
+    return Part(table, f"{table}: {title}", tables=[Tabled(table, title, tables.printed(cells), cells)])
 
 
 def argos_parts(runs: pd.DataFrame) -> Iterator[tuple[str, Part]]:
@@ -80,9 +90,9 @@ def argos_parts(runs: pd.DataFrame) -> Iterator[tuple[str, Part]]:
         return
     frame = fidelity.against_argos(runs)
     text = [
-        f"A mean score agrees within {fidelity.SCORE_TOLERANCE:.0%}, within {fidelity.PUCK_TOLERANCE} pucks, or "
-        "when the 95 % Welch interval of the difference holds 0; a mean share of time in conflict agrees within "
-        f"{fidelity.SHARE_TOLERANCE}.",
+        f"A mean score agrees within {fidelity.SCORE_TOLERANCE:.0%}, within {fidelity.PUCK_TOLERANCE} pucks, "
+        "or when the 95 % Welch interval of the difference holds 0; a mean share of time in conflict agrees "
+        f"within {fidelity.SHARE_TOLERANCE}.",
         f"Scores agree in {frame['score_fits'].sum()} of {len(frame)} rows, shares of time in "
         f"{frame['share_fits'].sum()}.",
     ]
@@ -103,29 +113,30 @@ def verdicts_part(verdicts: Sequence[Verdict]) -> Part:
     frame = pd.DataFrame([vars(verdict) for verdict in verdicts])
     counts = frame["verdict"].value_counts()
     told = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
-    header = ["finding", "verdict", "effect (interval)", "unit", "seeds", "statement", "note"]
+    header = ["finding", "verdict", "statement", "effect (interval)", "unit", "seeds", "note"]
     rows = [
         [
             verdict.finding,
             verdict.verdict,
+            verdict.statement,
             _effect(verdict),
             verdict.unit,
             str(verdict.seeds),
-            verdict.statement,
             verdict.note,
         ]
         for verdict in verdicts
     ]
     marks = {name: name.replace(" ", "-") for name in counts.index}
     marks |= {verdict.statement: "statement" for verdict in verdicts}
+    marks |= {verdict.note: "note" for verdict in verdicts if verdict.note}
     table = PrintedTable(header, rows, "", marks)
     return Part(
         "verdicts",
         "Findings",
         [
             f"{len(verdicts)} findings at the seeds given: {told}.",
-            "A finding holds or fails where the interval of its effect lies on one side; it is undecided where it "
-            "does not, or where seeds or densities are missing.",
+            "A finding holds or fails where the interval of its effect lies on one side; it is undecided "
+            "where it does not, or where seeds or densities are missing.",
         ],
         tables=[Tabled("findings", "Findings and their verdicts", table, frame)],
     )

@@ -21,7 +21,8 @@ def report(
         Path | None, typer.Option(metavar="FILE", help="The report. [default: DIR/report.html]")
     ] = None,
     findings: Annotated[
-        Path | None, typer.Option(metavar="TOML", help="Findings of your own, judged with those of the thesis.")
+        Path | None,
+        typer.Option(metavar="TOML", help="Findings of your own, judged with those of the thesis."),
     ] = None,
     colour_blind: Annotated[
         bool, typer.Option("--colour-blind", help="Colours of swarms that everybody tells apart.")
