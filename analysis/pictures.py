@@ -19,21 +19,23 @@ class Picture(NamedTuple):
 
     Attributes
     ----------
-    kind : {'png', 'svg'}
-        Format of the bytes.
-    content : bytes
-        The file.
+    files : dict of str to bytes
+        The figure in each of `FORMATS`.
     width, height : int
         Size for a page (CSS pixels, 96 an inch).
     """
 
-    kind: str
-    content: bytes
+    files: dict[str, bytes]
     width: int
     height: int
 
+    @property
+    def smallest(self) -> str:
+        """The format with the fewest bytes."""
+        return min(self.files, key=lambda kind: len(self.files[kind]))
 
-def encoded(figure: Figure, kind: str, dots_per_inch: float = DOTS_PER_INCH) -> bytes:
+
+def encoded(figure: Figure, kind: str) -> bytes:
     """Return a figure as the bytes of a file.
 
     Parameters
@@ -42,8 +44,6 @@ def encoded(figure: Figure, kind: str, dots_per_inch: float = DOTS_PER_INCH) -> 
         What is drawn.
     kind : {'png', 'svg'}
         Format.
-    dots_per_inch : float
-        Of PNG.
 
     Raises
     ------
@@ -56,27 +56,24 @@ def encoded(figure: Figure, kind: str, dots_per_inch: float = DOTS_PER_INCH) -> 
     # Without these an SVG has the date in it and identifiers at random.
     with mpl.rc_context({"svg.hashsalt": "kswarms"}):
         metadata = {"Date": None} if kind == "svg" else None
-        figure.savefig(content, format=kind, dpi=dots_per_inch, metadata=metadata)
+        figure.savefig(content, format=kind, dpi=DOTS_PER_INCH, metadata=metadata)
     return content.getvalue()
 
 
-def smallest(figure: Figure, dots_per_inch: float = 110) -> Picture:
-    """Draw a figure for a page: as PNG or SVG, whichever is smaller.
+def drawn(figure: Figure) -> Picture:
+    """Draw a figure in every format.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
-        What is drawn.
-    dots_per_inch : float
-        Of PNG.
+        What is drawn; its layout is fixed by it.
     """
-    contents = {}
+    files = {}
     for kind in FORMATS:
-        contents[kind] = encoded(figure, kind, dots_per_inch)
+        files[kind] = encoded(figure, kind)
         figure.set_layout_engine("none")  # laid out once is enough
-    kind = min(contents, key=lambda each: len(contents[each]))
     width, height = (round(96 * inches) for inches in figure.get_size_inches())
-    return Picture(kind, contents[kind], width, height)
+    return Picture(files, width, height)
 
 
 def save(figure: Figure, path: Path) -> None:

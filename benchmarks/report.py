@@ -36,7 +36,7 @@ def write_study(
     densities: int | None = None,
     seeds: int | None = None,
 ) -> int:
-    """Write `runs.parquet` and `policies.parquet` as if scenarios had been played, with random numbers in them.
+    """Write `runs.parquet` and `policies.parquet` as if scenarios had been played, of random numbers.
 
     Parameters
     ----------

@@ -12,13 +12,13 @@ from analysis.drawing import Look
 from analysis.findings import FINDINGS, Finding, judge_all
 from analysis.report.coverage import Planned, coverage
 from analysis.report.coverage import printed as printed_coverage
-from analysis.report.page import Chapter, Part, Tabled, render
+from analysis.report.page import Chapter, Part, Report, Tabled
 from analysis.report.provenance import provenance_parts
 from analysis.report.record_parts import PlacesOf, conflict_parts, recorded_curves, robots_parts
 from analysis.report.scenario_parts import ARGOS, argos_parts, scenario_part, table_part, verdicts_part
 from analysis.results import Results, read_results
 
-__all__ = ["Planned", "report"]
+__all__ = ["Planned", "Report", "report"]
 
 _OF_SCENARIOS: Final = {
     "fig-6.": "Symmetric swarms (chapter 6)",
@@ -52,8 +52,8 @@ def report(
     places_of: PlacesOf = lambda *_: None,
     safe: bool = False,
     progress: Progress = iter,
-) -> str:
-    """Write the report on a results directory, as HTML.
+) -> Report:
+    """Report on a results directory.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def report(
 
     Returns
     -------
-    str
+    Report
         The same for the same results.
 
     Raises
@@ -108,7 +108,7 @@ def report(
         "provenance": "Provenance",
     }
     chapters = [Chapter(_anchor(title), title, parts[key]) for key, title in titles.items() if parts[key]]
-    return render(f"Report on {directory.resolve().name}", _summary(results, covered), chapters)
+    return Report(f"Report on {directory.resolve().name}", _summary(results, covered), chapters)
 
 
 def _verdicts(results: Results, findings: Sequence[Finding]) -> Iterator[tuple[str, Part]]:

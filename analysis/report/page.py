@@ -17,7 +17,7 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from agents.errors import InputError
-from analysis.pictures import Picture, smallest, write_whole
+from analysis.pictures import Picture, drawn, write_whole
 from analysis.printed import PrintedTable
 
 _MIME: Final = {"png": "image/png", "svg": "image/svg+xml"}
@@ -25,16 +25,35 @@ _MIME: Final = {"png": "image/png", "svg": "image/svg+xml"}
 
 @dataclass(frozen=True)
 class Shown:
-    """A picture with what it shows in words, for those who do not see it, and a caption for all."""
+    """A picture on the page.
 
+    Attributes
+    ----------
+    name : str
+        Of its files, without suffix.
+    picture : Picture
+        What is shown.
+    alt : str
+        What it shows, in words, for those who do not see it.
+    caption : str
+        What stands below.
+    """
+
+    name: str
     picture: Picture
     alt: str
     caption: str
 
     @property
     def uri(self) -> str:
-        """The picture as a data URI."""
-        return f"data:{_MIME[self.picture.kind]};base64,{base64.b64encode(self.picture.content).decode()}"
+        """The picture as a data URI, in the smallest of its formats."""
+        kind = self.picture.smallest
+        return f"data:{_MIME[kind]};base64,{base64.b64encode(self.picture.files[kind]).decode()}"
+
+    @property
+    def files(self) -> dict[str, bytes]:
+        """The picture in every format by the name of its file."""
+        return {f"{self.name}.{kind}": content for kind, content in self.picture.files.items()}
 
 
 @dataclass(frozen=True)
@@ -64,13 +83,20 @@ class Tabled:
         return Markup(self.printed.to_html())
 
     @property
-    def downloads(self) -> dict[str, str]:
-        """Data URIs by the name of the file that each becomes."""
-        files = {
-            f"{self.name}.csv": ("text/csv", self.frame.to_csv(index=False)),
-            f"{self.name}.md": ("text/markdown", self.printed.to_markdown()),
+    def files(self) -> dict[str, bytes]:
+        """The table as CSV, Markdown and HTML by the name of its file."""
+        texts = {
+            "csv": self.frame.to_csv(index=False),
+            "md": self.printed.to_markdown(),
+            "html": self.printed.to_html(),
         }
-        return {name: f"data:{kind};charset=utf-8,{quote(text)}" for name, (kind, text) in files.items()}
+        return {f"{self.name}.{kind}": text.encode() for kind, text in texts.items()}
+
+    @property
+    def downloads(self) -> dict[str, str]:
+        """Data URIs of CSV and Markdown by the name of the file that each becomes."""
+        kinds = {f"{self.name}.csv": "text/csv", f"{self.name}.md": "text/markdown"}
+        return {name: f"data:{kind};charset=utf-8,{quote(self.files[name])}" for name, kind in kinds.items()}
 
 
 @dataclass
@@ -100,9 +126,9 @@ class Part:
     tables: list[Tabled] = field(default_factory=list)
     source: str = ""
 
-    def show(self, figure: Figure, alt: str, caption: str) -> None:
-        """Add a figure."""
-        self.pictures.append(Shown(smallest(figure), alt, caption))
+    def show(self, name: str, figure: Figure, alt: str, caption: str) -> None:
+        """Draw a figure and add it, as in `Shown`."""
+        self.pictures.append(Shown(name, drawn(figure), alt, caption))
 
 
 @dataclass
@@ -115,40 +141,73 @@ class Chapter:
     text: Sequence[str] = ()
 
 
-def render(title: str, summary: Sequence[str], chapters: Sequence[Chapter]) -> str:
-    """Return the page as HTML.
+@dataclass(frozen=True)
+class Report:
+    """All that is reported.
 
-    Parameters
+    Attributes
     ----------
     title : str
-        Its heading.
+        Heading of the page.
     summary : sequence of str
-        Paragraphs below the heading.
+        Paragraphs below it.
     chapters : sequence of Chapter
         What follows the table of contents.
     """
-    environment = Environment(
-        loader=PackageLoader("analysis.report", "templates"),
-        autoescape=select_autoescape(["html"]),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    template = environment.get_template("report.html")
-    return template.render(title=title, summary=summary, chapters=chapters)
+
+    title: str
+    summary: Sequence[str]
+    chapters: Sequence[Chapter]
+
+    def to_html(self) -> str:
+        """Return the page."""
+        environment = Environment(
+            loader=PackageLoader("analysis.report", "templates"),
+            autoescape=select_autoescape(["html"]),
+            undefined=StrictUndefined,
+            trim_blocks=True,
+            lstrip_blocks=True,
+        )
+        return environment.get_template("report.html").render(
+            title=self.title, summary=self.summary, chapters=self.chapters
+        )
+
+    def write_page(self, path: Path) -> None:
+        """Write the page to a file, whole or not at all.
+
+        Raises
+        ------
+        InputError
+            The file cannot be written; then it is as it was.
+        """
+        _write("out", path, self.to_html().encode())
+
+    def write_files(self, folder: Path) -> int:
+        """Write each picture as PNG and SVG, each table as CSV, Markdown and HTML, and return how many files.
+
+        Raises
+        ------
+        InputError
+            The folder cannot be made or a file cannot be written.
+        """
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise InputError("files", str(folder), f"must be a folder ({error.strerror})") from error
+        items: list[Shown | Tabled] = []
+        for chapter in self.chapters:
+            for part in chapter.parts:
+                items += [*part.pictures, *part.tables]
+        contents = {name: content for item in items for name, content in item.files.items()}
+        for name, content in contents.items():
+            _write("files", folder / name, content)
+        return len(contents)
 
 
-def write(path: Path, html: str) -> None:
-    """Write the page to a file, whole or not at all.
-
-    Raises
-    ------
-    InputError
-        The file cannot be written; then it is as it was.
-    """
+def _write(field: str, path: Path, content: bytes) -> None:
     try:
-        write_whole(path, html.encode())
+        write_whole(path, content)
     except OSError as error:
         raise InputError(
-            "out", str(path), f"must be a file that can be written ({error.strerror})"
+            field, str(path), f"must be a place that can be written ({error.strerror})"
         ) from error

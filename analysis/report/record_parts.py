@@ -91,12 +91,14 @@ def _network_part(directory: Path, curve: Recorded, game: pd.DataFrame, of_game:
     part = Part(f"network-{curve.id}", curve.name)
     if not game.empty:
         part.show(
+            part.id,
             networks.network_figure(networks.meeting_network(game), f"{of_game}: who met whom", look),
             f"Network and matrix of the time that each two robots spent in conflict with another, {of_game}.",
             f"Who met whom in the measured game, {of_game}: left, the wider and darker a line the longer two "
             "met; right, the same times as a matrix, grey where two never met.",
         )
         part.show(
+            f"jams-{curve.id}",
             networks.jams_figure(networks.jams(game), f"{of_game}: jams"),
             f"Robots in jams and in the largest cluster over the time of the measured game, {of_game}.",
             f"Jams, {of_game}: robots linked by conflicts that go on at the same second.",
@@ -155,6 +157,7 @@ def _maps_part(curve: Recorded, measured: pd.DataFrame, places_of: PlacesOf, loo
     seeds = dense["seed"].nunique()
     of_games = f"{curve.name}: N = {dense['n'].iloc[0]}, {seeds} seed{'s' if seeds > 1 else ''}"
     part.show(
+        part.id,
         maps.heat_maps(measured, of_games, _common(curve, places_of), look),
         f"Heat maps of the places where conflicts began in the measured game, all and by action, {of_games}.",
         f"Where conflicts began in the measured game, all and by action, with their numbers; {of_games}.",
@@ -174,11 +177,13 @@ def _common(curve: Recorded, places_of: PlacesOf) -> maps.Places | None:
 def _emergence_part(curve: Recorded, one: pd.DataFrame, of_game: str) -> Part:
     part = Part(f"emergence-{curve.id}", curve.name)
     part.show(
+        f"choices-{curve.id}",
         emergence.choices_figure(one, f"{of_game}: choices"),
         f"Line chart of the share of an action among learners' choices over the time of learning, {of_game}.",
         f"Choices while learning, of all conflicts of the swarm and of each robot, {of_game}.",
     )
     part.show(
+        f"values-{curve.id}",
         emergence.values_figure(one, f"{of_game}: Q"),
         f"Line chart of the value Q of each action over the time of learning, {of_game}.",
         f"Q while learning (Eq. 4.15), mean of the swarm and of each robot, {of_game}.",
@@ -196,6 +201,7 @@ def robots_parts(directory: Path, curve: Recorded) -> Iterator[tuple[str, Part]]
     of_games = f"{curve.name}: N = {dense['n'].iloc[0]}, {seeds} seed{'s' if seeds > 1 else ''}"
     part = Part(f"robots-{curve.id}", f"{curve.name}: robot by robot")
     part.show(
+        part.id,
         emergence.preferences_figure(robots, of_games),
         f"Scatter chart of the value Q of each action at the end, robot by robot, {of_games}.",
         f"How unlike the robots of a swarm became: Q of every arm at the end of the game, {of_games}.",

@@ -46,11 +46,12 @@ def scenario_part(results: Results, scenario: str, title: str, missing: str, tab
     frame = scores.scores(results.runs, scenario)
     curves = ", ".join(dict.fromkeys(frame["curve"]))
     alt = f"Line chart of the {shown} over the number of robots in all, for {curves}"
-    for look, form in (
-        (Look(safe, detail=False), "as in the source"),
-        (Look(safe), "with intervals and single seeds"),
+    for name, look, form in (
+        (f"{scenario}-source", Look(safe, detail=False), "as in the source"),
+        (scenario, Look(safe), "with intervals and single seeds"),
     ):
         part.show(
+            name,
             figures.figure_of(results.runs, scenario, title, look),
             f"{alt}, {form}; the table of {scenario} has its numbers.",
             f"{shown[0].upper()}{shown[1:]}, {form}.",
@@ -69,6 +70,7 @@ def _add_learned(part: Part, results: Results, scenario: str, title: str, table:
     conditions = list(dict.fromkeys(of_scenario["condition"]))
     published = "; crosses: published" if cells["published"].notna().any() else ""
     part.show(
+        f"{scenario}-learned",
         figures.learned_over_n(cells, f"{scenario}: {title}" if title else scenario, conditions),
         "Line chart of the share of robots that learned to attack others, or to flee within their swarm, "
         f"over the number of robots in all; {name} has its numbers.",

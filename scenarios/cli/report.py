@@ -20,6 +20,12 @@ def report(
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="The report. [default: DIR/report.html]")
     ] = None,
+    files: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR", help="Also each figure as PNG and SVG, each table as CSV, Markdown and HTML."
+        ),
+    ] = None,
     findings: Annotated[
         Path | None,
         typer.Option(metavar="TOML", help="Findings of your own, judged with those of the thesis."),
@@ -30,7 +36,7 @@ def report(
 ) -> None:
     """Write figures, tables and verdicts of all results into one HTML file that needs no network."""
     from analysis.findings import FINDINGS, load
-    from analysis.report import Planned, page
+    from analysis.report import Planned
     from analysis.report import report as report_on
 
     path = out or directory / "report.html"
@@ -46,7 +52,7 @@ def report(
         )
         for name, scenario in CATALOGUE.items()
     }
-    html = report_on(
+    whole = report_on(
         directory,
         plan,
         TABLES,
@@ -55,8 +61,10 @@ def report(
         safe=colour_blind,
         progress=_progress,
     )
-    page.write(path, html)
-    typer.echo(f"report: {path} ({len(html.encode()) / 1e6:.1f} MB)")
+    if files is not None:
+        typer.echo(f"files:  {files} ({whole.write_files(files)} files)")
+    whole.write_page(path)
+    typer.echo(f"report: {path} ({path.stat().st_size / 1e6:.1f} MB)")
 
 
 def _arena(scenario: str, condition: str, n: int, seed: int) -> "Arena | None":
