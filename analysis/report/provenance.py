@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import pandas as pd
+import pyarrow as pa
 import pyarrow.parquet as pq
 
 from agents.errors import InputError
@@ -43,14 +44,13 @@ def provenance_parts(directory: Path) -> list[Part]:
 
 
 def _file(path: Path) -> dict[str, Any]:
+    try:
+        rows = pq.read_metadata(path).num_rows
+    except (OSError, pa.ArrowException) as error:
+        raise InputError("results", str(path), "must be a readable Parquet file") from error
     with path.open("rb") as content:
         digest = hashlib.file_digest(content, "sha256").hexdigest()
-    return {
-        "file": path.name,
-        "rows": pq.read_metadata(path).num_rows,
-        "bytes": path.stat().st_size,
-        "sha256": digest,
-    }
+    return {"file": path.name, "rows": rows, "bytes": path.stat().st_size, "sha256": digest}
 
 
 def _read(path: Path) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from typing import Final
 
 import pandas as pd
 
+from agents.errors import InputError
 from analysis import fidelity, figures, scores, tables
 from analysis.drawing import Look
 from analysis.findings import Verdict
@@ -88,9 +89,10 @@ def table_part(policies: pd.DataFrame, table: str, title: str, scenarios: Sequen
 
 def argos_parts(runs: pd.DataFrame) -> Iterator[tuple[str, Part]]:
     """Yield the comparison with ARGoS, for the chapter of these scenarios, if any run can be compared."""
-    if not runs["scenario"].str.startswith(ARGOS).any():
+    try:
+        frame = fidelity.against_argos(runs)
+    except InputError:
         return
-    frame = fidelity.against_argos(runs)
     text = [
         f"A mean score agrees within {fidelity.SCORE_TOLERANCE:.0%}, within {fidelity.PUCK_TOLERANCE} pucks, "
         "or when the 95 % Welch interval of the difference holds 0; a mean share of time in conflict agrees "
