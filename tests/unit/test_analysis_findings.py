@@ -191,7 +191,7 @@ def test_few_robots_without_an_exception_do_not_prove_that_there_is_none() -> No
 
 
 def test_robots_of_a_game_are_not_independent() -> None:
-    # In half of the games all attack: as many robots do as with the half in each game, but the interval is wide.
+    # In half of the games all attack: as many robots as with the half in each, but less is known.
     results = learners([0.5], densities=(50,), scale=0.0)
     assert results.policies is not None
     together = results.policies.assign(attack_share=results.policies["seed"] % 2)
@@ -260,7 +260,7 @@ def test_other_seeds_are_no_pairs(over: str, note: str) -> None:
     assert (verdict.verdict, verdict.note) == (NO_DATA, note)
 
 
-# ------------------------------------------------------------------------------------------ what a verdict says
+# ---------------------------------------------------------------------------------------- what a verdict says
 
 
 def test_a_verdict_at_every_density_shows_the_one_that_decides() -> None:
@@ -358,7 +358,7 @@ def test_the_difference_of_percentages_is_in_points() -> None:
     assert (verdict.effect, verdict.unit, verdict.verdict) == (pytest.approx(20), "percentage points", HOLDS)
 
 
-# ----------------------------------------------------------------------------------------- odds of being wrong
+# ---------------------------------------------------------------------------------------- odds of being wrong
 
 
 @pytest.mark.slow
@@ -402,7 +402,7 @@ def test_an_opponent_must_be_named_among_several() -> None:
         assert verdict_on(named, results).verdict == expected
 
 
-# -------------------------------------------------------------------------------------------- the thesis's own
+# ------------------------------------------------------------------------------------------- the thesis's own
 
 
 def test_without_runs_of_its_scenarios_no_finding_is_decided() -> None:

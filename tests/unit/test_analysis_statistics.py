@@ -30,7 +30,7 @@ def normal_samples(count: int, seeds: int, mean: float = 0.0) -> Iterator[Values
 
 
 def may_be(share: float, hits: int, count: int, slack: float = 0.0) -> bool:
-    """Return whether `hits` of `count` suit odds of `share` (up to `slack`), by the binomial law at 99.9 %."""
+    """Return whether `hits` of `count` suit odds of `share`, up to `slack`, by the binomial law (99.9 %)."""
     low, _ = stats.binom.interval(0.999, count, share - slack)
     _, high = stats.binom.interval(0.999, count, min(1.0, share + slack))
     return bool(low <= hits <= high)
@@ -42,7 +42,7 @@ def test_the_binomial_check_tells_odds_apart() -> None:
     assert not may_be(0.05, 3, 400)
 
 
-# ------------------------------------------------------------------------------------------ bootstrap intervals
+# ---------------------------------------------------------------------------------------- bootstrap intervals
 
 
 @pytest.mark.parametrize(
@@ -124,7 +124,7 @@ def test_what_belongs_to_a_seed_is_drawn_together() -> None:
 
 @pytest.mark.parametrize("confidence", [0.0, 1.0, -1.0, 95.0])
 def test_a_confidence_is_between_0_and_1(confidence: float) -> None:
-    with pytest.raises(InputError, match="confidence=.*must be between 0 and 1"):
+    with pytest.raises(InputError, match=r"confidence=.*must be between 0 and 1"):
         bootstrap_interval([1.0, 2.0], confidence=confidence)
 
 
@@ -133,7 +133,7 @@ def test_no_seed_is_no_sample() -> None:
         bootstrap_interval([])
 
 
-# ------------------------------------------------------------------------------------------- paired comparisons
+# ----------------------------------------------------------------------------------------- paired comparisons
 
 
 @pytest.mark.slow
@@ -195,7 +195,7 @@ def test_pairs_that_are_none(first: list[float], second: list[float], complaint:
         compare_paired(first, second)
 
 
-# --------------------------------------------------------------------------------------- many, and seeds needed
+# ------------------------------------------------------------------------------------- many, and seeds needed
 
 
 def test_holm_by_hand() -> None:
