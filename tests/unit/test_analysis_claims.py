@@ -67,7 +67,10 @@ def test_a_finding_can_be_changed() -> None:
         ("", r"findings=None: is required"),
         ("findings = []", r"findings=\[\]"),
         ("not TOML", r"findings='.*mine\.toml': must be TOML: Expected '='"),
-        (HEAD + COMPARE + "above = 3", r"claim\.compare\.above=3: no such field; there are densities, kind, left"),
+        (
+            HEAD + COMPARE + "above = 3",
+            r"claim\.compare\.above=3: no such field; there are densities, kind, left",
+        ),
         (HEAD + COMPARE + "[notes]", r"notes=\{\}: no such field; there are findings"),
         (HEAD + COMPARE.replace(">", "≈"), r"relation='≈': must be '>', '>=', '<', '<=' or 'within'"),
         (HEAD + COMPARE.replace("compare", "guess"), r"findings\.0\.claim=.*'compare', 'overtake'"),
