@@ -115,7 +115,7 @@ def rank_correlation(
     def statistic(resampled: Values) -> Values:
         of_curve = stats.rankdata(resampled.mean(axis=1), axis=-1)
         of_curve -= of_curve.mean(axis=-1, keepdims=True)
-        length = np.linalg.norm(ranks) * np.linalg.norm(of_curve, axis=-1)
+        length = np.sqrt((ranks @ ranks) * (of_curve**2).sum(axis=-1))
         result: Values = np.divide(of_curve @ ranks, length, out=np.zeros_like(length), where=length > 0)
         return result
 

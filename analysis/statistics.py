@@ -7,6 +7,7 @@ data that a method has no answer for.
 
 import math
 import warnings
+from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
@@ -29,6 +30,7 @@ RESAMPLES: Final = 9999
 _RANDOM_SEED: Final = 0
 # Numbers resampled at a time: 200 seeds at ten densities stay below 20 MB.
 _BATCH: Final = 2_000_000
+_MOST_SEEDS: Final = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -172,9 +174,7 @@ def compare_paired(first: ArrayLike, second: ArrayLike, confidence: float = CONF
     """
     one, other = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
     if one.ndim != 1 or one.shape != other.shape:
-        raise InputError(
-            "second", other.shape, f"must be of the shape {one.shape} of `first`, a list of seeds"
-        )
+        raise InputError("second", other.shape, f"must have the shape {one.shape}, one value for each seed")
     _at_least(2, one.size)
     difference = bootstrap_interval(one - other, confidence=confidence)
     test = stats.permutation_test(
@@ -254,7 +254,7 @@ def more_seeds(differences: ArrayLike, power: float = 0.8, confidence: float = C
     Returns
     -------
     int or None
-        0 if there are enough; None where no number would be: the mean is 0, or above a million.
+        0 if there are enough; None where a million would not do.
 
     Raises
     ------
@@ -267,13 +267,15 @@ def more_seeds(differences: ArrayLike, power: float = 0.8, confidence: float = C
     if not 0 < power < 1:
         raise InputError("power", power, "must be between 0 and 1")
     size = abs(effect_size(values))
-    # Below, a million seeds would not do; above, two would: statsmodels' search ends at neither.
-    if size < 1e-3:
-        return None
-    if size > 100:
-        return 0
-    needed = TTestPower().solve_power(effect_size=size, alpha=1 - confidence, power=power)
-    return max(0, math.ceil(float(np.squeeze(needed))) - len(values))
+    law = TTestPower()
+
+    def enough(seeds: int) -> bool:
+        # NaN where the effect is so large that the law has no number for it.
+        return not law.power(size, seeds, 1 - confidence) < power
+
+    # statsmodels' own search stops without an answer at large effects.
+    more = bisect_left(range(len(values), _MOST_SEEDS), True, key=enough)
+    return more if len(values) + more < _MOST_SEEDS else None
 
 
 def expanded(confidence: float, seeds: int) -> float:

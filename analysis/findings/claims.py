@@ -247,6 +247,13 @@ class Agreement(_OverDensities):
     cells: tuple[Quantity, ...] = Field(min_length=1)
     margin: float = Field(gt=0)
 
+    @model_validator(mode="after")
+    def _learned(self) -> Self:
+        if any(cell.measure not in LEARNED for cell in self.cells):
+            given = [cell.measure for cell in self.cells]
+            raise InputError("cells", given, "must be columns of Tables 6.1 and 6.2: what was learned")
+        return self
+
     @property
     def quantities(self) -> tuple[Quantity, ...]:
         """What the results must hold."""

@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
+from agents.errors import InputError
 from analysis.curves import overtaking, rank_correlation
 from analysis.findings.claims import (
     Agreement,
@@ -49,7 +50,8 @@ def judge(finding: Finding, results: Results) -> Verdict:
     Raises
     ------
     InputError
-        The results hold a game twice, or a quantity that is not clear which.
+        The results hold a game twice, policies without their games, or several opponents of which the claim
+        names none.
     """
     claim = finding.claim
     try:
@@ -110,10 +112,8 @@ def _compare_at_each(claim: Compare, data: Data, confidence: float) -> Outcome:
     if not samples:
         raise NoDataError(f"no seed has been played on both sides at {listed(data.densities)}")
     single = {n: bootstrap_interval(values, confidence=confidence) for n, values in samples.items()}
-    joint = {
-        n: bootstrap_interval(values, confidence=_joint(confidence, len(samples)))
-        for n, values in samples.items()
-    }
+    for_all = _joint(confidence, len(samples))
+    joint = {n: bootstrap_interval(values, confidence=for_all) for n, values in samples.items()}
     holds = [n for n in samples if region.verdict(single[n]) == HOLDS]
     fails = [n for n in samples if region.verdict(joint[n]) == FAILS]
     shown = joint if fails else single
@@ -128,7 +128,7 @@ def _compare_at_each(claim: Compare, data: Data, confidence: float) -> Outcome:
     elif verdict == UNDECIDED:
         notes += [
             f"sure at {listed(holds)}" if holds else "",
-            _what_would_help(samples[worst], region, confidence),
+            _what_would_help(samples[worst], region, confidence, for_all),
         ]
     return Outcome(verdict, shown[worst], _unit(claim), min(map(len, samples.values())), notes)
 
@@ -141,7 +141,7 @@ def _compare_over_all(claim: Compare, data: Data, confidence: float) -> Outcome:
     verdict = region.verdict(interval)
     notes = [*data.notes, claim.over]
     if verdict == UNDECIDED:
-        notes.append(_what_would_help(values, region, confidence))
+        notes.append(_what_would_help(values, region, confidence, confidence))
     return Outcome(verdict, interval, _unit(claim), len(values), notes)
 
 
@@ -210,9 +210,11 @@ def _share(claim: Share, data: Data, confidence: float) -> Outcome:
     Robots of a game are not independent, so games are drawn again (bootstrap); but where nobody, or hardly
     anyone, is an exception, the bootstrap has nothing to draw from, and the exact binomial interval is wider.
     """
-    of_robots = sizes(data.results, claim.quantity)
-    shares, robots = complete([data.complete()[0], of_robots], data.densities)
-    counts = np.stack([shares.to_numpy() / 100 * robots.to_numpy(), robots.to_numpy()], axis=-1)
+    (shares,) = data.complete()
+    robots = sizes(data.results, claim.quantity).reindex_like(shares)
+    if robots.isna().any(axis=None):
+        raise InputError("runs", claim.quantity.scenario, "must have the games of which there are policies")
+    counts = np.stack([shares / 100 * robots, robots], axis=-1)
 
     def pooled(samples: Values) -> Values:
         sums: Values = samples.sum(axis=(1, 2))
@@ -267,11 +269,13 @@ def _joint(confidence: float, cases: int) -> float:
     return 1 - (1 - confidence) / cases
 
 
-def _what_would_help(differences: Values, region: Region, confidence: float) -> str:
-    few = _too_few(len(differences), confidence)
-    if few:
+def _what_would_help(values: Values, region: Region, to_hold: float, to_fail: float) -> str:
+    """Say how many seeds would decide a mean that is undecided; the arguments are the two levels it takes."""
+    mean = float(values.mean())
+    level = to_hold if region.verdict(Interval(mean, mean, mean)) == HOLDS else to_fail
+    if few := _too_few(len(values), level):
         return few
-    more = more_seeds(differences - region.nearest_bound(float(differences.mean())), _POWER, confidence)
+    more = more_seeds(values - region.nearest_bound(mean), _POWER, level)
     if more is None:
         return "no number of seeds would decide it, as it looks"
     return f"if it is as it looks, {max(1, more)} more seeds decide it (power {_POWER:.0%})"
