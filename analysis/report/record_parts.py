@@ -72,16 +72,13 @@ def conflict_parts(
         Chapter, ``networks``, ``emergence`` or ``maps``, and a part of it.
     """
     first = curve.densest().iloc[0]
-    n, seed = int(first["n"]), int(first["seed"])
     dense = read_conflicts(directory, curve.densest()["run"])
     one = dense[dense["run"] == first["run"]]
     measured = dense[dense["phase"] == "game"]
-    of_game = f"{curve.name}: N = {n}, seed {seed}"
-    if not measured.empty:
-        yield (
-            "networks",
-            _network_part(directory, curve, measured[measured["run"] == first["run"]], of_game, look),
-        )
+    game = measured[measured["run"] == first["run"]]
+    of_game = f"{curve.name}: N = {first['n']}, seed {first['seed']}"
+    if not game.empty:
+        yield "networks", _network_part(directory, curve, game, of_game, look)
         yield "maps", _maps_part(curve, measured, places_of, look)
     if one["q"].notna().any():
         yield "emergence", _emergence_part(curve, one, of_game)
@@ -89,38 +86,35 @@ def conflict_parts(
 
 def _network_part(directory: Path, curve: Recorded, game: pd.DataFrame, of_game: str, look: Look) -> Part:
     part = Part(f"network-{curve.id}", curve.name)
-    if not game.empty:
-        part.show(
-            part.id,
-            networks.network_figure(networks.meeting_network(game), f"{of_game}: who met whom", look),
-            f"Network and matrix of the time that each two robots spent in conflict with another, {of_game}.",
-            f"Who met whom in the measured game, {of_game}: left, the wider and darker a line the longer two "
-            "met; right, the same times as a matrix, grey where two never met.",
-        )
-        part.show(
-            f"jams-{curve.id}",
-            networks.jams_figure(networks.jams(game), f"{of_game}: jams"),
-            f"Robots in jams and in the largest cluster over the time of the measured game, {of_game}.",
-            f"Jams, {of_game}: robots linked by conflicts that go on at the same second.",
-        )
+    part.show(
+        part.id,
+        networks.network_figure(networks.meeting_network(game), f"{of_game}: who met whom", look),
+        f"Network and matrix of the time that each two robots spent in conflict, {of_game}.",
+        f"Who met whom in the measured game, {of_game}: left, the wider and darker a line the longer two "
+        "met; right, the same times as a matrix, grey where two never met.",
+    )
+    part.show(
+        f"jams-{curve.id}",
+        networks.jams_figure(networks.jams(game), f"{of_game}: jams"),
+        f"Robots in jams and in the largest cluster over the time of the measured game, {of_game}.",
+        f"Jams, {of_game}: robots linked by conflicts that go on at the same moment, looked at every second.",
+    )
     rows = []
     for n, games in curve.games.groupby("n"):
-        chosen = games.head(GAMES)
-        conflicts = read_conflicts(directory, chosen["run"])
-        for run, rows_of_run in conflicts[conflicts["phase"] == "game"].groupby("run"):
-            seed = int(chosen.set_index("run")["seed"][run])
-            rows.append({"n": n, "seed": seed, **_of_network(rows_of_run)})
-    if rows:
-        frame = pd.DataFrame(rows).sort_values(["n", "seed"])
-        part.tables.append(Tabled(part.id, f"Networks of {curve.name}", _printed(frame), frame))
+        seeds = games.head(GAMES).set_index("run")["seed"]
+        conflicts = read_conflicts(directory, list(seeds.index))
+        for run, of_run in conflicts[conflicts["phase"] == "game"].groupby("run"):
+            rows.append({"n": n, "seed": seeds[run], **_of_network(of_run)})
+    frame = pd.DataFrame(rows).sort_values(["n", "seed"])
+    part.tables.append(Tabled(part.id, f"Networks of {curve.name}", _printed(frame), frame))
     return part
 
 
 def _of_network(game: pd.DataFrame) -> Mapping[str, float]:
-    over_time = networks.jams(game)
-    described = networks.describe(networks.meeting_network(game))
-    jammed = over_time[["jams", "jammed", "largest"]].mean().to_dict()
-    return described | {"jams": jammed["jams"], "jammed": jammed["jammed"], "largest": jammed["largest"]}
+    means = networks.jams(game)[["jams", "jammed", "largest"]].mean()
+    return networks.describe(networks.meeting_network(game)) | {
+        str(name): mean for name, mean in means.items()
+    }
 
 
 def _printed(frame: pd.DataFrame) -> PrintedTable:

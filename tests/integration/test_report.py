@@ -12,6 +12,8 @@ import pytest
 from benchmarks import report as study
 from scenarios.catalogue import CATALOGUE
 from scenarios.cli import invoke
+from tests.unit.test_analysis_figures import runs_of
+from tests.unit.test_analysis_records import MET, robots
 from tests.unit.test_analysis_report import Page
 
 if TYPE_CHECKING:
@@ -116,11 +118,27 @@ def test_the_same_results_give_the_same_report_in_other_colours_if_asked(
     assert (tmp_path / "other.html").read_bytes() != first
 
 
+def test_help_has_an_example(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["report", "--help"]) == 0
+    assert "Example: kswarms report results" in capsys.readouterr().out
+
+
 def test_records_have_their_chapters(pages: dict[str, Path]) -> None:
     page = Page(pages["recorded"].read_text())
     for part in ("network-fig-6-4b", "emergence-fig-6-4b", "robots-fig-6-4b", "map-fig-6-4b"):
         assert part in page.ids
     assert len(page.pictures) == 3 + 2 + 2 + 1 + 1
+
+
+def test_scenarios_of_ones_own_have_a_chapter_of_their_own(tmp_path: Path) -> None:
+    runs = runs_of("hunt", densities=[16], seeds=1)
+    runs.to_parquet(tmp_path / "runs.parquet")
+    MET.assign(run=runs["run"].iloc[0]).to_parquet(tmp_path / "conflicts.parquet")
+    robots()[:1].assign(run=runs["run"].iloc[0]).to_parquet(tmp_path / "robots.parquet")  # it does not learn
+    assert invoke(["report", str(tmp_path)]) == 0
+    page = Page((tmp_path / "report.html").read_text())
+    assert {"other-scenarios", "hunt", "network-hunt", "map-hunt"} <= set(page.ids)
+    assert len(page.pictures) == 2 + 2 + 1
 
 
 @pytest.mark.parametrize(

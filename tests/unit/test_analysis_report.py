@@ -11,14 +11,17 @@ import pytest
 from matplotlib.figure import Figure
 
 from agents.errors import InputError
+from analysis.drawing import Look
 from analysis.findings import Verdict
 from analysis.printed import PrintedTable
 from analysis.report.coverage import Planned, coverage, printed
 from analysis.report.page import Chapter, Part, Report, Tabled
 from analysis.report.provenance import provenance_parts
-from analysis.report.record_parts import recorded_curves
+from analysis.report.record_parts import conflict_parts, recorded_curves
 from analysis.report.scenario_parts import argos_parts, verdicts_part
+from model.arena import Arena, build_arena
 from tests.unit.test_analysis_figures import runs_of
+from tests.unit.test_analysis_records import MET
 
 PLAN = {
     "fig-x": Planned("x", ("",), (6, 16), 4),
@@ -160,6 +163,31 @@ def test_a_shared_game_is_looked_at_once(tmp_path: Path) -> None:
     assert [curve.id for curve in conflicts] == ["fig-b--x", "fig-b--y"]
     assert conflicts[0].densest()["seed"].tolist() == [0, 1, 2, 3]
     assert robots == []
+
+
+def test_stations_that_differ_from_seed_to_seed_are_not_drawn_into_one_map(tmp_path: Path) -> None:
+    runs = runs_of("fig-x", densities=[16], seeds=2)
+    games = [MET.assign(run=run) for run in runs["run"].unique()]
+    pd.concat(games).to_parquet(tmp_path / "conflicts.parquet")
+    (curve,), _ = recorded_curves(tmp_path, runs)
+
+    def drawn(layout: str, monkeypatch: pytest.MonkeyPatch) -> list[bool]:
+        shown: list[bool] = []
+
+        def heat_maps(conflicts: pd.DataFrame, title: str, places: Arena | None, look: Look) -> Figure:
+            shown.append(places is not None)
+            return Figure()
+
+        monkeypatch.setattr("analysis.maps.heat_maps", heat_maps)
+        chapters = conflict_parts(
+            tmp_path, curve, lambda *key: build_arena(layout, 2, 2.0, 0.16, 0.17, key[-1]), Look()
+        )
+        assert [chapter for chapter, _ in chapters] == ["networks", "maps"]
+        return shown
+
+    with pytest.MonkeyPatch.context() as patch:
+        assert drawn("symmetric", patch) == [True]
+        assert drawn("random-stations", patch) == [False]
 
 
 def test_provenance_without_a_manifest_says_so(tmp_path: Path) -> None:
