@@ -140,6 +140,8 @@ def draw_curves(axes: Axes, curves: Sequence[Curve], quantity: str, look: Look =
             axes.fill_between(
                 points["n"], points["low"], points["high"], color=form.colour, alpha=0.2, linewidth=0
             )
+            if len(points) == 1:  # a band of no width
+                axes.vlines(points["n"] + shift, points["low"], points["high"], color=form.colour)
         draw_line(axes, points["n"], points["mean"], form, curve.label)
     if len(densities) <= _MOST_TICKS:
         axes.set_xticks(densities)

@@ -48,7 +48,7 @@ def scenario_part(results: Results, scenario: str, title: str, missing: str, tab
     curves = ", ".join(dict.fromkeys(frame["curve"]))
     alt = f"Line chart of the {shown} over the number of robots in all, for {curves}"
     for name, look, form in (
-        (f"{scenario}-source", Look(safe, detail=False), "as in the source"),
+        (f"{scenario}-source", Look(safe, detail=False), "in the form of the source"),
         (scenario, Look(safe), "with intervals and single seeds"),
     ):
         part.show(
@@ -84,7 +84,12 @@ def _add_learned(part: Part, results: Results, scenario: str, title: str, table:
 def table_part(policies: pd.DataFrame, table: str, title: str, scenarios: Sequence[str]) -> Part:
     """Show a table of the source, published beside measured where numbers are at hand."""
     cells = tables.learned(policies, scenarios)
-    return Part(table, f"{table}: {title}", tables=[Tabled(table, title, tables.printed(cells), cells)])
+    absent = [name for name in scenarios if name not in set(cells["scenario"])]
+    text = (
+        [f"Missing: {', '.join(absent)}; the numbers are of {cells['scenario'].iloc[0]}."] if absent else []
+    )
+    shown = Tabled(table, title, tables.printed(cells), cells)
+    return Part(table, f"{table}: {title}", text, tables=[shown])
 
 
 def argos_parts(runs: pd.DataFrame) -> Iterator[tuple[str, Part]]:

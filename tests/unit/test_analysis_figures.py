@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.axes import Axes
-from matplotlib.collections import PathCollection, PolyCollection
+from matplotlib.collections import LineCollection, PathCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -177,6 +177,13 @@ def test_labels_title_and_seeds() -> None:
     fewer = runs[(runs["n"] != 6) | (runs["seed"] == 0)]
     assert pucks_over_n(fewer, "fig-x").legends[0].get_title().get_text().startswith("mean of 1 to 4 seeds")
     assert pucks_over_n(runs, "fig-x").get_suptitle() == "fig-x"
+
+
+def test_one_density_has_a_bar_for_each_interval() -> None:
+    figure = pucks_over_n(runs_of("fig-x", densities=[20], seeds=4), "fig-x")
+    bars = [drawn for drawn in figure.axes[0].collections if isinstance(drawn, LineCollection)]
+    ends = [sorted(segment[:, 1]) for drawn in bars for segment in drawn.get_segments()]
+    assert [low < mean < high for (low, high), mean in zip(ends, (30, 40), strict=True)] == [True, True]
 
 
 def test_one_seed_at_one_density_without_pucks() -> None:
