@@ -7,8 +7,6 @@ lengths in metres, angles in radians.
 import math
 from typing import Final
 
-import numpy as np
-
 from agents.body import SENSORS
 from agents.compiled import compiled
 from agents.fleet import Floats, Integers
@@ -17,6 +15,8 @@ SECTOR: Final = 2.0 * math.pi / SENSORS
 """Angle covered by one sensor (rad)."""
 _COSINES: Final = tuple(math.cos(sensor * SECTOR) for sensor in range(SENSORS))
 _SINES: Final = tuple(math.sin(sensor * SECTOR) for sensor in range(SENSORS))
+_HALF_COSINE: Final = math.cos(SECTOR / 2.0)
+_HALF_SINE: Final = math.sin(SECTOR / 2.0)
 
 
 @compiled
@@ -145,7 +145,23 @@ def sense(
         squared = dx * dx + dy * dy
         if other == robot or squared > reach * reach:
             continue
-        ahead = dx * forward_x + dy * forward_y
-        aside = dy * forward_x - dx * forward_y
-        sensor = int(np.floor(math.atan2(aside, ahead) / SECTOR + 0.5)) % SENSORS
+        sensor = _sector(dx * forward_x + dy * forward_y, dy * forward_x - dx * forward_y)
         free[sensor] = min(free[sensor], math.sqrt(squared) - 2.0 * radius)
+
+
+@compiled
+def _sector(ahead: float, aside: float) -> int:
+    """Return the sensor in whose sector a direction lies.
+
+    Seen from the right edge of the sensor ahead, the sectors are the eight octants: comparisons tell them
+    apart in a fraction of the time of an arctangent.
+    """
+    x = ahead * _HALF_COSINE - aside * _HALF_SINE
+    y = aside * _HALF_COSINE + ahead * _HALF_SINE
+    if y > 0.0 or (y == 0.0 and x > 0.0):
+        if x > 0.0:
+            return 0 if y < x else 1
+        return 2 if y > -x else 3
+    if x < 0.0:
+        return 4 if y > x else 5
+    return 6 if -y > x else 7
