@@ -42,6 +42,17 @@ class Verdict:
     seeds: int = 0
     note: str = ""
 
+    def __str__(self) -> str:
+        """Return the verdict in a line: what a failing test, or a reader, wants to know."""
+        number = "" if self.effect is None else f": {self.effect:.4g} {self.unit} ({self.interval})"
+        return f"{self.finding} {self.verdict}{number}; {self.seeds} seeds; {self.note}"
+
+    @property
+    def interval(self) -> str:
+        """The interval in words, its unit left out; a bound that is missing is –."""
+        low, high = ("–" if bound is None else f"{bound:.4g}" for bound in (self.low, self.high))
+        return f"{low} … {high}"
+
 
 @dataclass(frozen=True)
 class Region:

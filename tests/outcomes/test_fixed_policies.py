@@ -38,14 +38,14 @@ def results(request: pytest.FixtureRequest, played: Callable[..., Results]) -> R
 )
 def test_the_finding_holds(finding: str, results: Results) -> None:
     verdict = judge(BY_ID[finding], results)
-    assert verdict.verdict == HOLDS, verdict
+    assert verdict.verdict == HOLDS, str(verdict)
 
 
 def test_two_avoiding_swarms_score_alike(results: Results) -> None:
     # Without the margin: eight seeds cannot tell the two from each other at all.
     finding = BY_ID["6.1a-alike"]
     verdict = judge(finding.replace(claim=finding.claim.replace(margin=0.0)), results)
-    assert verdict.verdict != FAILS, verdict
+    assert verdict.verdict != FAILS, str(verdict)
 
 
 def test_a_game_for_pucks_ends_with_the_fiftieth(results: Results) -> None:

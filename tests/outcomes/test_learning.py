@@ -87,7 +87,7 @@ def test_the_learner_scores_at_least_as_much_as_its_opponent_at_every_density(
 ) -> None:
     # Where all learn flight both swarms do the same: a tie, which one interval in twenty denies.
     verdict = judge(without_margin(BY_ID[f"{figure}-at-least"]), outcomes(sample, f"fig-{figure}"))
-    assert verdict.verdict != FAILS, verdict
+    assert verdict.verdict != FAILS, str(verdict)
     assert verdict.seeds == sample.seeds
 
 
@@ -102,7 +102,7 @@ def test_against_attackers_the_learner_scores_clearly_more(sample: Sample, outco
     """The source has it so at every N; twenty seeds show it over several N together."""
     finding = without_margin(BY_ID["6.4b-clearly-more"], over="mean over N")
     verdict = judge(finding, outcomes(sample, "fig-6.4b"))
-    assert verdict.verdict == HOLDS, verdict
+    assert verdict.verdict == HOLDS, str(verdict)
 
 
 @each_sample
@@ -114,18 +114,18 @@ def test_more_than_99_percent_learn_flight_within_the_swarm(
     verdict = judge(finding, outcomes(sample, f"fig-{figure}"))
     assert effect(verdict) > 99
     if sample is ALL:  # enough robots to leave no doubt
-        assert verdict.verdict == HOLDS, verdict
+        assert verdict.verdict == HOLDS, str(verdict)
 
 
 def effect(verdict: Verdict) -> float:
-    assert verdict.effect is not None, verdict
+    assert verdict.effect is not None, str(verdict)
     return verdict.effect
 
 
 @each_sample
 def test_table_6_1(sample: Sample, outcomes: Outcomes) -> None:
     verdict = judge(BY_ID["table-6.1"], outcomes(sample, "fig-6.4a"))
-    assert effect(verdict) <= sample.table_error, verdict
+    assert effect(verdict) <= sample.table_error, str(verdict)
     assert f"{2 * len(sample.densities)} cells" in verdict.note
 
 
@@ -133,7 +133,7 @@ def test_table_6_1(sample: Sample, outcomes: Outcomes) -> None:
 @pytest.mark.parametrize("figure", ["6.4a", "6.4b"])
 def test_the_more_robots_the_more_learn_to_attack(figure: str, outcomes: Outcomes) -> None:
     verdict = judge(BY_ID[f"table-6.1-rises-{figure}"], outcomes(ALL, f"fig-{figure}"))
-    assert verdict.verdict == HOLDS, verdict
+    assert verdict.verdict == HOLDS, str(verdict)
     assert effect(verdict) > 0.8
 
 

@@ -166,7 +166,7 @@ MIXED = [5.0, 5.0, 5.0, 5.0, -5.0]
 )
 def test_what_runs_decide(claim: Claim, lead: Sequence[float], expected: str) -> None:
     verdict = verdict_on(claim, duel(lead))
-    assert verdict.verdict == expected, verdict
+    assert verdict.verdict == expected, str(verdict)
     assert verdict.seeds == 10
 
 
@@ -177,7 +177,7 @@ def test_what_runs_decide(claim: Claim, lead: Sequence[float], expected: str) ->
 def test_the_share_of_robots(shares: Sequence[float], scale: float, expected: str) -> None:
     results = learners(shares, scenario="fig-6.8", opponent=2, scale=scale)
     verdict = verdict_on(Share(quantity=WITHIN, above=99), results)
-    assert verdict.verdict == expected, verdict
+    assert verdict.verdict == expected, str(verdict)
     assert verdict.unit == "% of robots"
 
 
@@ -211,7 +211,7 @@ PUBLISHED = [TABLE[n] / 100 for n in DENSITIES]
 def test_agreement_with_the_published_table(off: float, expected: str) -> None:
     results = learners([share + off for share in PUBLISHED], scale=0.02)
     verdict = verdict_on(Agreement(cells=(LEARNED,), margin=5), results)
-    assert verdict.verdict == expected, verdict
+    assert verdict.verdict == expected, str(verdict)
     assert verdict.effect == pytest.approx(100 * off, abs=1e-9)
     assert "5 cells" in verdict.note
 
@@ -273,6 +273,15 @@ def test_a_verdict_at_every_density_shows_the_one_that_decides() -> None:
     failed = verdict_on(more(), duel([5, -4, 5, -9, 5]))
     assert failed.effect == pytest.approx(-9)
     assert failed.note.endswith("false at N = 16, 40")
+
+
+def test_a_verdict_in_a_line() -> None:
+    verdict = Verdict("it", "It is so.", HOLDS, 1.25, 0.5, 2.0, "pucks", 8, "N = 6")
+    assert str(verdict) == "it holds: 1.25 pucks (0.5 … 2); 8 seeds; N = 6"
+    open_ended = Verdict("it", "It is so.", UNDECIDED, 36.125, 30.0, None, "robots", 8, "N = 6, 50")
+    assert str(open_ended) == "it undecided: 36.12 robots (30 … –); 8 seeds; N = 6, 50"
+    unknown = Verdict("it", "It is so.", NO_DATA, note="no runs of fig-6.1a")
+    assert str(unknown) == "it no data; 0 seeds; no runs of fig-6.1a"
 
 
 def test_an_undecided_verdict_says_how_many_seeds_would_decide() -> None:
