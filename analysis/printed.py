@@ -52,7 +52,7 @@ class PrintedTable:
         kinds = ["number" if number else "" for number in self.numeric()]
         heading = "".join(map(_heading, self.header, kinds))
         body = "\n".join(self._row(cells, kinds) for cells in self.rows)
-        caption = f"<caption>{_html(self.caption)}</caption>\n" if self.caption else ""
+        caption = f"<caption><span>{_html(self.caption)}</span></caption>\n" if self.caption else ""
         return f"<table>\n{caption}<thead><tr>{heading}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>\n"
 
     def _row(self, cells: Sequence[str], kinds: Sequence[str]) -> str:

@@ -25,7 +25,7 @@ def test_html_has_headings_of_columns_and_rows_and_escapes_all_text() -> None:
     lines = TABLE.to_html().splitlines()
     assert lines[:3] == [
         "<table>",
-        "<caption>two<br>lines &amp; more</caption>",
+        "<caption><span>two<br>lines &amp; more</span></caption>",
         '<thead><tr><th scope="col" class="number">N</th><th scope="col" class="number">S1<br>pucks</th>'
         '<th scope="col">fits</th><th scope="col">a|b</th></tr></thead>',
     ]
