@@ -19,7 +19,7 @@ from agents.fleet import ACTION, HOME, HOME_TURN, HOMING_ERROR, IDLE, LEG, LEG_O
 from agents.habits import Conflict, Habits
 from agents.learner import Learner
 from agents.policies import Policy
-from agents.sensors import SECTOR, heads_for, walls_met, wrap
+from agents.sensors import SECTOR, heads_for, read_robots, walls_met, wrap
 from agents.streams import Purpose, Streams
 
 _STRAIGHT: Final = 1e-9
@@ -234,7 +234,7 @@ class Krembot(ContinuousSpaceAgent):
         self.conflicts[swarm] += 1
         if self._log is not None:
             x, y = self._fleet.positions[index].tolist()
-            self._open = (index, other, now, x, y, action, active)
+            self._open = (index, other, now, x, y, action, active, self._read_robots(other))
         if action.direction != TOWARDS:
             angle = self._vacant_direction(vacant)
         if abs(angle) > _STRAIGHT:
@@ -290,6 +290,12 @@ class Krembot(ContinuousSpaceAgent):
         self.close(now, learn=False)
         self._timer = None
         self._is_over = True
+
+    def _read_robots(self, met: int) -> tuple[int, ...]:
+        """Return the robot that each sensor reads as it meets one of them, −1 for none."""
+        row, habits = self._fleet.robots[self.index], self._habits
+        where = row["forward_x"], row["forward_y"], self._fleet.positions
+        return read_robots(self.index, met, *where, habits.radius, habits.half, habits.active_range)
 
     def _vacant_direction(self, vacant: int) -> float:
         """Return the angle of the most vacant sensor from the heading (rad), ties broken at random."""

@@ -7,6 +7,8 @@ lengths in metres, angles in radians.
 import math
 from typing import Final
 
+import numpy as np
+
 from agents.body import SENSORS
 from agents.compiled import compiled
 from agents.fleet import Floats, Integers
@@ -165,3 +167,75 @@ def _sector(ahead: float, aside: float) -> int:
     if x < 0.0:
         return 4 if y > x else 5
     return 6 if -y > x else 7
+
+
+def read_robots(
+    robot: int,
+    met: int,
+    forward_x: float,
+    forward_y: float,
+    positions: Floats,
+    radius: float,
+    half: float,
+    active_range: float,
+) -> tuple[int, ...]:
+    """Tell which robot each of the eight sensors reads at the start of a conflict.
+
+    An active sensor reads the nearest thing in its sector, as in `sense`: one robot, or a wall. The robot
+    met is what the sensor towards it reads in any case: it is the one that was noticed.
+
+    Parameters
+    ----------
+    robot, met : int
+        The robot that senses, and the one that it meets.
+    forward_x, forward_y : float
+        Unit vector of its heading.
+    positions : ndarray of float64, shape (n, 2)
+        Of all robots.
+    radius : float
+        Radius of every body.
+    half : float
+        Half the side of the arena.
+    active_range : float
+        A sensor is active if what is nearest in its sector is not farther, from the own surface.
+
+    Returns
+    -------
+    tuple of int, length 8
+        Robots, −1 where a sensor reads none; the sensor ahead first, then counter-clockwise.
+    """
+    nearest = np.full(SENSORS, active_range)
+    read = np.full(SENSORS, -1)
+    _read(robot, met, forward_x, forward_y, positions, radius, half, nearest, read)
+    return tuple(read.tolist())
+
+
+@compiled
+def _read(
+    robot: int,
+    met: int,
+    forward_x: float,
+    forward_y: float,
+    positions: Floats,
+    radius: float,
+    half: float,
+    nearest: Floats,
+    read: Integers,
+) -> None:
+    """Write what is read, and how near it is where it is nearer than `nearest` was."""
+    x = positions[robot, 0]
+    y = positions[robot, 1]
+    for sensor in range(SENSORS):
+        dx = forward_x * _COSINES[sensor] - forward_y * _SINES[sensor]
+        dy = forward_x * _SINES[sensor] + forward_y * _COSINES[sensor]
+        nearest[sensor] = min(nearest[sensor], wall_ray(x, y, dx, dy, half) - radius)
+    for other in range(len(positions)):
+        if other == robot:
+            continue
+        dx = positions[other, 0] - x
+        dy = positions[other, 1] - y
+        sensor = _sector(dx * forward_x + dy * forward_y, dy * forward_x - dx * forward_y)
+        gap = -math.inf if other == met else math.sqrt(dx * dx + dy * dy) - 2.0 * radius
+        if gap <= nearest[sensor]:
+            read[sensor] = other
+            nearest[sensor] = gap
