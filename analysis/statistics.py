@@ -10,7 +10,7 @@ import warnings
 from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -115,32 +115,29 @@ def bootstrap_interval(
     if (values == values[0]).all():
         return Interval(estimate, estimate, estimate)
 
-    def of_seeds(
-        chosen: NDArray[np.int64], axis: int = -1
-    ) -> Values:  # `axis`: SciPy's call, always the last
+    # SciPy resamples lists of numbers, so seeds go by their place; its `axis` is always the last.
+    def of_seeds(chosen: NDArray[np.int64], axis: int = -1) -> Values:
         resampled = chosen.reshape(-1, chosen.shape[-1])
         return statistic(values[resampled]).reshape(chosen.shape[:-1])
 
-    arguments: dict[str, Any] = {
-        "confidence_level": expanded(confidence, len(values)),
-        "vectorized": True,
-    }
-    indices = (np.arange(len(values)),)
+    level = expanded(confidence, len(values))
     with warnings.catch_warnings(), np.errstate(invalid="ignore"):
-        warnings.simplefilter("ignore", stats.DegenerateDataWarning)  # what is done about it stands below
+        # Where BCa has no answer; what is done about it stands below.
+        warnings.simplefilter("ignore", stats.DegenerateDataWarning)
         warnings.simplefilter("ignore", RuntimeWarning)
         result = stats.bootstrap(
-            indices,
+            (np.arange(len(values)),),
             of_seeds,
             n_resamples=RESAMPLES,
             batch=max(1, _BATCH // values.size),
-            rng=np.random.default_rng(_RANDOM_SEED),
+            vectorized=True,
+            confidence_level=level,
             method="BCa",
-            **arguments,
+            rng=np.random.default_rng(_RANDOM_SEED),
         )
     bounds = result.confidence_interval
     if math.isnan(bounds.low) or math.isnan(bounds.high):
-        tail = (1 - expanded(confidence, len(values))) / 2
+        tail = (1 - level) / 2
         # A value that was drawn, not one between two: these may be infinite.
         low, high = np.quantile(result.bootstrap_distribution, [tail, 1 - tail], method="inverted_cdf")
         return Interval(estimate, float(low), float(high))

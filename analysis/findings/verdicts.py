@@ -49,7 +49,7 @@ class Verdict:
 
     @property
     def interval(self) -> str:
-        """The interval in words, its unit left out; a bound that is missing is –."""
+        """The interval in words, without its unit; – where there is no bound."""
         low, high = ("–" if bound is None else f"{bound:.4g}" for bound in (self.low, self.high))
         return f"{low} … {high}"
 

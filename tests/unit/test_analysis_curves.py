@@ -72,6 +72,7 @@ def test_curves_that_run_together_may_have_crossed_anywhere() -> None:
     assert 36 < found.for_good.high < 38
 
 
+@pytest.mark.slow
 def test_the_interval_of_a_crossing_covers_the_truth_about_as_often_as_it_says() -> None:
     # The line through 0 at N = 30, where the noise of the means is a fifth of the slope between densities.
     line, count = np.array([-2.4, -1.4, -0.4, 0.6, 1.6]), 200

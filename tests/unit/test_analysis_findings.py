@@ -367,6 +367,22 @@ def test_the_difference_of_percentages_is_in_points() -> None:
     assert (verdict.effect, verdict.unit, verdict.verdict) == (pytest.approx(20), "percentage points", HOLDS)
 
 
+@pytest.mark.parametrize("lead", [FAR, NEAR, TIE, BEHIND, MIXED], ids=str)
+@pytest.mark.parametrize(("relation", "reverse"), [(">", "<"), (">=", "<="), ("within", "within")])
+def test_sides_may_be_exchanged(lead: Sequence[float], relation: str, reverse: str) -> None:
+    there = verdict_on(more(relation, margin=0.5), duel(lead))
+    back = verdict_on(more(reverse, margin=0.5, left=S1, right=S2), duel(lead))
+    assert there.verdict == back.verdict
+    assert there.effect == pytest.approx(-back.effect if back.effect is not None else None)
+
+
+def test_the_order_of_rows_does_not_matter() -> None:
+    results = duel(NEAR)
+    shuffled = Results(results.runs.sample(frac=1, random_state=1))
+    for claim in (more(), more(over="sum over N"), Overtake(ahead=S2, behind=S1, between=(16, 30))):
+        assert verdict_on(claim, shuffled) == verdict_on(claim, results)
+
+
 # ---------------------------------------------------------------------------------------- odds of being wrong
 
 
