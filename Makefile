@@ -28,8 +28,9 @@ lint: $(TEST)  ## ruff
 types: $(TEST)  ## mypy, strict
 	$(BIN)/mypy
 
-bench: $(RUN)  ## speed, memory and start-up, with the events and conflicts processed
+bench: $(RUN)  ## speed, memory and start-up, with the events and conflicts processed; the report
 	$(BIN)/python benchmarks/bench.py
+	$(BIN)/python benchmarks/report.py
 
 full: $(TEST)  ## the tests again, with every outcome at its full number of seeds (long)
 	$(BIN)/python -m pytest -m "full or not full" -o faulthandler_timeout=0

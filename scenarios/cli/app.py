@@ -13,6 +13,7 @@ import typer
 from agents.errors import InputError
 from scenarios.cli.calibrate import calibrate
 from scenarios.cli.catalogue import list_scenarios, show
+from scenarios.cli.report import report
 from scenarios.cli.run import run
 from scenarios.cli.status import replay, status
 from scenarios.runner import RunError
@@ -94,3 +95,4 @@ app.command(epilog="Example: kswarms replay results 0c2b1f7a9d3e4f56")(replay)
 app.command(epilog="Example: kswarms calibrate --free friction,gamma --densities 16,30,50 --seeds 2")(
     calibrate
 )
+app.command(epilog="Example: kswarms report results --out report.html")(report)
