@@ -83,8 +83,8 @@ def curves_of(rows: pd.DataFrame) -> list[Curve]:
 
 
 def _brief(policy: str) -> str:
-    """Return a policy without its arguments, which are too long for a legend."""
-    return "+".join(part.partition("(")[0] for part in split_outside(policy, "+"))
+    """Return a policy without its arguments and the path of its file, which are too long for a legend."""
+    return "+".join(part.partition("(")[0].rpartition(":")[2] for part in split_outside(policy, "+"))
 
 
 def draw_curves(axes: Axes, curves: Sequence[Curve], quantity: str) -> None:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from multiprocessing import active_children, get_context, parent_process
 from typing import Any, Final
 
-from scenarios.runs import Run
+from scenarios.runs import Run, require_unchanged
 
 RECORDS: Final = ("conflicts", "robots", "trajectory")
 """Tables that a game can record, besides its results."""
@@ -65,6 +65,7 @@ def play(run: Run, record: str = "") -> Outcome:
 
     model = None
     try:
+        require_unchanged(run)
         model = GameModel(run.game, seed=run.seed, record=record)
         model.play()
         return Outcome(model.results(), policy_rows(model), model.tables())
