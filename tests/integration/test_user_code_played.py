@@ -11,9 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from model.plain import ForagingModel
-from scenarios.catalogue import CATALOGUE
 from scenarios.cli import invoke
-from scenarios.description import Condition, Scenario, SwarmRule
 
 EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
 TEXTS = [
@@ -43,21 +41,23 @@ def _in_a_users_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     Path("code").mkdir()
     for name, where in (("cautious.py", ""), ("haste.py", ""), ("win_stay.py", "code")):
         Path(where, name).write_text((EXAMPLES / name).read_text())
-    conditions = tuple(
-        Condition(
-            name=str(k), duration=40, learning=60, swarms=(SwarmRule(policy="avoid"), SwarmRule(policy=text))
-        )
-        for k, text in enumerate(TEXTS)
-    )
-    mine = Scenario(id="mine", title="Own code", densities=(6,), seeds=1, conditions=conditions)
-    monkeypatch.setitem(CATALOGUE, "mine", mine)
+    condition = """
+        [[conditions]]
+        name = "{}"
+        duration = 40
+        learning = 60
+        swarms = [{{ policy = "avoid" }}, {{ policy = "{}" }}]
+    """
+    curves = (condition.format(k, text) for k, text in enumerate(TEXTS))
+    head = "id = 'mine'\ntitle = 'Own code'\ndensities = [6]\nseeds = 1\n"
+    Path("mine.toml").write_text(head + "".join(curves))
 
 
 @pytest.mark.slow
 def test_the_command_line_plays_it_in_worker_processes_as_in_its_own() -> None:
     tables = []
     for jobs in ("1", "2"):
-        assert invoke(["run", "mine", "--jobs", jobs, "--out", jobs, "--no-figures"]) == 0
+        assert invoke(["run", "mine.toml", "--jobs", jobs, "--out", jobs, "--no-figures"]) == 0
         tables.append(pq.read_table(Path(jobs, "runs.parquet")))
     assert tables[0].equals(tables[1])
     assert set(tables[0]["policy"].to_pylist()) == {"avoid", *TEXTS}
@@ -67,7 +67,7 @@ def test_the_command_line_plays_it_in_worker_processes_as_in_its_own() -> None:
 def test_a_mistake_in_it_is_one_line_and_nothing_is_written(capsys: pytest.CaptureFixture[str]) -> None:
     code = Path("cautious.py").read_text()
     Path("cautious.py").write_text(code.replace("return self.flight", "return self.flee", 1))
-    assert invoke(["run", "mine", "--out", "results"]) == 2
+    assert invoke(["run", "mine.toml", "--out", "results"]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "policy='cautious.py:Cautious': choose(1) raises AttributeError: " in line
     assert "(cautious.py, line " in line
