@@ -86,5 +86,5 @@ def _shown(output: Any, stem: str, pictures: dict[str, bytes]) -> str:
         return f"![What the cell drew]({name})"
     if "text/html" in data:
         # Without what pandas says of its look, the theme's own style applies to a table.
-        return re.sub(r'<style.*?</style>| border="1" class="dataframe"', "", data["text/html"], flags=re.DOTALL)
+        return re.sub(r'(?s)<style.*?</style>| border="1" class="dataframe"', "", data["text/html"])
     return f"```text\n{data['text/plain']}\n```"
