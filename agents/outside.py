@@ -19,7 +19,7 @@ from typing import Any, Final
 
 from agents.errors import InputError
 
-_NOT_THE_USERS: Final = (str(Path(__file__).parent.parent), sys.prefix, sys.base_prefix, "<frozen")
+_NOT_THE_USERS: Final = (f"{Path(__file__).parent}/", sys.prefix, sys.base_prefix, "<frozen")
 """Where code lies whose line would not help a user to find the mistake."""
 
 
