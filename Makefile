@@ -29,7 +29,7 @@ types: $(TEST)  ## mypy, strict
 	$(BIN)/mypy
 
 docs: $(TEST)  ## build the documentation into site/, notebooks executed, every warning an error
-	NO_MKDOCS_2_WARNING=true $(BIN)/mkdocs build --quiet
+	NO_MKDOCS_2_WARNING=true $(BIN)/mkdocs build
 
 bench: $(RUN)  ## speed, memory and start-up, with the events and conflicts processed
 	$(BIN)/python benchmarks/bench.py
