@@ -119,8 +119,8 @@ def form_of_condition(index: int, of_swarm: Form | None = None) -> Form:
 
 
 def brief(policy: str) -> str:
-    """Return a policy without its arguments, which are too long for a legend."""
-    return "+".join(part.partition("(")[0] for part in split_outside(policy, "+"))
+    """Return a policy without its arguments and the path of its file, which are too long for a legend."""
+    return "+".join(part.partition("(")[0].rpartition(":")[2] for part in split_outside(policy, "+"))
 
 
 def draw_curves(axes: Axes, curves: Sequence[Curve], quantity: str, look: Look = DETAILED) -> None:

@@ -158,6 +158,8 @@ def test_legend_leaves_out_the_arguments_of_a_policy() -> None:
         {"policy": {"attack": """avoid+inter-learner(reward="wlu(delta=0.1, b=1.5)", rule='ucb')"""}}
     )
     assert legend(pucks_over_n(runs, "fig-x")) == ["S1: avoid", "S2: avoid+inter-learner"]
+    own = runs_of("fig-x").replace({"policy": {"attack": "far/away/my_file.py:Cautious(note='a:b')"}})
+    assert legend(pucks_over_n(own, "fig-x")) == ["S1: avoid", "S2: Cautious"]
 
 
 def test_labels_title_and_seeds() -> None:
