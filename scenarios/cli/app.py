@@ -14,6 +14,8 @@ import typer
 from agents.errors import InputError
 from scenarios.cli.calibrate import calibrate
 from scenarios.cli.catalogue import list_scenarios, show
+from scenarios.cli.explore import explore
+from scenarios.cli.film import film
 from scenarios.cli.run import run
 from scenarios.runner import RunError
 from scenarios.runs import package_version
@@ -91,3 +93,5 @@ app.command(epilog="Example: kswarms run fig-6.1a fig-6.1c --densities 6,30,50 -
 app.command(epilog="Example: kswarms calibrate --free friction,gamma --densities 16,30,50 --seeds 2")(
     calibrate
 )
+app.command(epilog="Example: kswarms explore fig-6.4b")(explore)
+app.command(epilog="Example: kswarms film fig-6.1c --n 50 --to 120 --out fight.gif")(film)

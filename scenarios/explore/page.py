@@ -1,0 +1,176 @@
+"""The page: the arena and its buttons, the controls at the side, the panels beside it.
+
+One thread of each page lets its game run. It waits for the browser to have drawn a frame before it makes the
+next, so a slow browser sees fewer frames of the same game, never a growing delay.
+"""
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Any, Final
+
+import solara
+
+from scenarios.explore.controls import Controls
+from scenarios.explore.panels import Panels
+from scenarios.explore.session import SPEEDS, Session
+from scenarios.explore.views import Json, frame_of, scene_of
+
+FASTEST: Final = 1 / 25
+"""Between two frames, at least (s)."""
+_PANELS_EVERY: Final = 0.5
+"""Between two looks of the panels at a game that runs (s)."""
+_GIVE_UP: Final = 1.0
+"""For how long a browser is waited for: one that shows another tab draws nothing (s)."""
+
+_STYLE: Final = """
+.kswarms-page { margin: 0; }
+.kswarms-heading { font-weight: 600; display: block; margin-top: 10px; }
+.kswarms-swarm { padding: 4px 0 4px 10px; margin: 4px 0; }
+"""
+
+first_session: Callable[[], Session] = Session
+"""Makes the session that a new page begins with; the command line sets it."""
+
+
+class Beats:
+    """What tells the page that there is something new to show."""
+
+    def __init__(self) -> None:
+        self.frame = solara.Reactive(0)
+        self.panels = solara.Reactive(0)
+        self.controls = solara.Reactive(0)
+        self.drawn = threading.Event()
+        self.wake = threading.Event()
+
+    def changed(self) -> None:
+        """Have everything shown anew."""
+        self.frame.value += 1
+        self.panels.value += 1
+        self.controls.value += 1
+        self.wake.set()
+
+
+@solara.component_vue("arena.vue")
+def _Arena(scene: Json, frame: Json, event_drawn: Callable[[int], None], event_choose: Callable[[int], None]) -> None:
+    """Draw the arena on a canvas of the browser."""
+
+
+@solara.component
+def Page() -> None:  # noqa: N802  # components are written like classes, as solara has it
+    """Show a game and its controls."""
+    session = solara.use_memo(lambda: first_session(), [])  # a partial has no name, which solara asks for
+    beats = solara.use_memo(Beats, [])
+    solara.use_effect(lambda: _run(session, beats), [])
+
+    def act(action: Callable[[], None]) -> None:
+        action()
+        beats.changed()
+
+    solara.Title("kswarms explore")
+    solara.Style(_STYLE)
+    with solara.Sidebar():
+        Controls(session, beats.controls, act)
+    with solara.v.Row(classes=["kswarms-page"]):
+        with solara.v.Col(cols=12, md=7):
+            _Message(session, beats.controls)
+            _ArenaView(session, beats, act)
+            _Transport(session, beats.controls, act)
+        with solara.v.Col(cols=12, md=5):
+            Panels(session, beats.panels, act)
+
+
+def _run(session: Session, beats: Beats) -> Callable[[], None]:
+    """Start the thread that lets the game run; return what ends it."""
+    over = threading.Event()
+
+    def run() -> None:
+        last = shown = time.monotonic()
+        while not over.is_set():
+            if not session.active:
+                beats.wake.wait()
+                beats.wake.clear()
+                last = time.monotonic()
+                continue
+            now = time.monotonic()
+            # A pause of the machine does not make the game jump.
+            moved = session.tick(min(now - last, 0.25))
+            last = now
+            if moved:
+                beats.drawn.clear()
+                beats.frame.value += 1
+                if not session.active:
+                    beats.changed()
+                elif now - shown >= _PANELS_EVERY:
+                    shown = now
+                    beats.panels.value += 1
+                beats.drawn.wait(_GIVE_UP)
+            time.sleep(max(0.0, FASTEST - (time.monotonic() - now)))
+
+    def end() -> None:
+        over.set()
+        beats.wake.set()
+        beats.drawn.set()
+        thread.join()
+        session.close()
+
+    thread = threading.Thread(target=run, daemon=True)
+    thread.start()
+    return end
+
+
+@solara.component
+def _ArenaView(session: Session, beats: Beats, act: Callable[[Callable[[], None]], None]) -> None:
+    number = beats.frame.value
+    player = session.player
+    scene = solara.use_memo(lambda: scene_of(player), [player])
+    _Arena(
+        scene=scene,
+        frame=frame_of(player, number, session.chosen, session.show_sectors, session.show_sensors),
+        event_drawn=lambda _: beats.drawn.set(),
+        event_choose=lambda robot: act(lambda: session.choose(robot)),
+    )
+
+
+@solara.component
+def _Message(session: Session, beat: solara.Reactive[int]) -> None:
+    beat.get()
+    if session.error:
+        solara.Error(f"{session.error} (shown is the game before)", icon=False, dense=True)
+
+
+@solara.component
+def _Transport(
+    session: Session, beat: solara.Reactive[int], act: Callable[[Callable[[], None]], None]
+) -> None:
+    """Show the buttons below the arena."""
+    beat.get()
+    player = session.player
+    runs = session.playing and not player.ended
+
+    def button(label: str, icon: str, action: Callable[[], None], **rest: Any) -> None:
+        solara.Button(label, icon_name=icon, on_click=lambda: act(action), small=True, **rest)
+
+    with solara.Row(gap="6px", style={"flex-wrap": "wrap", "align-items": "center"}):
+        button("Pause" if runs else "Play", "mdi-pause" if runs else "mdi-play", session.play, color="primary")
+        button("Step", "mdi-step-forward", session.step)
+        button("Reset", "mdi-skip-backward", session.reset)
+        button("Next conflict", "mdi-target", session.next_conflict)
+        if player.time < 0:
+            button("Skip learning", "mdi-fast-forward", lambda: session.go_to(0.0), color="secondary")
+        button("To the end", "mdi-skip-forward", lambda: session.go_to(player.game.duration))
+    with solara.Row(gap="12px", style={"flex-wrap": "wrap", "align-items": "center", "padding-top": "6px"}):
+        solara.Text("Speed ×")
+        solara.ToggleButtonsSingle(
+            session.speed,
+            values=list(SPEEDS),
+            on_value=lambda speed: act(lambda: setattr(session, "speed", speed)),
+            dense=True,
+        )
+        with solara.Div(style={"width": "9rem"}):
+            solara.InputFloat(
+                "Go to t (s)",
+                session.goal,
+                optional=True,
+                on_value=lambda time: act(lambda: session.go_to(time)) if time is not None else None,
+            )

@@ -1,0 +1,64 @@
+"""Serves the page on this machine, without asking anything of another one."""
+
+import os
+import socket
+import threading
+import webbrowser
+from collections.abc import Callable
+
+from agents.errors import InputError
+from scenarios.explore.session import Session
+
+HOST = "127.0.0.1"
+
+
+def serve(first_session: Callable[[], Session], port: int, open_browser: bool, ready: Callable[[str], None]) -> None:
+    """Serve the page until interrupted.
+
+    Parameters
+    ----------
+    first_session : callable
+        Makes the session that a new page begins with.
+    port : int
+        Where; 0 for any that is free.
+    open_browser : bool
+        Whether to open the page in the browser.
+    ready : callable
+        Told the address once the page can be opened.
+
+    Raises
+    ------
+    InputError
+        If the port is taken.
+    """
+    try:
+        listener = socket.create_server((HOST, port))
+    except (OSError, OverflowError):
+        raise InputError("port", port, "must be a free port of this machine, 0 for any") from None
+    address = f"http://localhost:{listener.getsockname()[1]}"
+    os.environ["SOLARA_APP"] = "scenarios.explore.page"
+    import uvicorn
+    from solara.server import settings
+
+    settings.telemetry.mixpanel_enable = False  # else it would tell its maker of each start
+    settings.main.mode = "production"  # else it would watch the files of the package for changes
+    settings.theme.show_banner = False
+    settings.theme.title = "kswarms explore"
+    from scenarios.explore import page
+    from solara.server.starlette import app
+
+    page.first_session = first_session
+
+    server = uvicorn.Server(uvicorn.Config(app, log_level="error", access_log=False))
+
+    def announce() -> None:
+        while not server.started:
+            if server.should_exit:
+                return
+            threading.Event().wait(0.05)
+        ready(address)
+        if open_browser:
+            webbrowser.open(address)
+
+    threading.Thread(target=announce, daemon=True).start()
+    server.run(sockets=[listener])

@@ -1,0 +1,234 @@
+"""What the page is about, without the page: the controls, the game that they led to, how it is played.
+
+A control that says something impossible leaves the game as it is and says why in one line.
+"""
+
+import math
+import time as clock
+from pathlib import Path
+from typing import Any, Final
+
+from agents.errors import InputError
+from agents.learner import Learner
+from scenarios.choice import chosen
+from scenarios.explore.form import Form, SwarmForm
+from scenarios.explore.player import Player
+from scenarios.replay import run_in
+
+SPEEDS: Final = (1, 2, 5, 10, 20, 50, 100)
+"""Seconds of the game in a second of the clock on the wall."""
+FIRST_SCENARIO: Final = "fig-6.1c"
+_USUAL_N: Final = 20
+_HASTE: Final = 0.2
+"""For how long a game may be played at full speed until it is shown again (s)."""
+_STRIDE: Final = 5.0
+"""Between two looks at the clock meanwhile (s of the game)."""
+
+
+class Session:
+    """One page: its controls and its game.
+
+    Parameters
+    ----------
+    scenario : str
+        Where it begins: what `scenarios.choice.chosen` takes.
+    run, results : str
+        Digest of a run and the directory that has it; the session then begins with that run.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        That was asked for last; the first of a table's.
+    condition : str
+        Name of the curve that the form was taken from, empty where there is one.
+    form : Form
+        What the controls say.
+    error : str
+        Why that cannot be played; empty if it can.
+    player : Player
+        The game.
+    playing : bool
+        Whether it runs.
+    speed : int
+        Seconds of the game in a second.
+    goal : float, optional
+        Instant to which the game is played as fast as can be (s, as `Player.time`).
+    chosen : int
+        Robot that is looked into.
+    show_sectors, show_sensors : bool
+        Whether the sectors in which robots ahead start a conflict are drawn, and the chosen robot's sensors.
+
+    Raises
+    ------
+    InputError
+        If there is no such scenario or run.
+    """
+
+    def __init__(self, scenario: str = FIRST_SCENARIO, run: str = "", results: str = "") -> None:
+        self.playing = False
+        self.speed = 10
+        self.goal: float | None = None
+        self.show_sectors = False
+        self.show_sensors = True
+        self.error = ""
+        self._owed = 0.0
+        if run:
+            found = run_in(Path(results), run)
+            name, self.condition = found.labels[0]
+            self.scenario = chosen([name])[0]
+            self.form = Form.of_game(found.game, found.seed)
+        else:
+            self.scenario = chosen([scenario])[0]
+            self.condition = self.scenario.conditions[0].name
+            self.form = self._form()
+        self.player = Player(self.form.game(), self.form.seed)
+        self.chosen = self._first_learner()
+
+    def close(self) -> None:
+        """Let the game go."""
+        self.playing = False
+        self.player.close()
+
+    # The controls.
+
+    def load(self, scenario: str) -> None:
+        """Take the controls from a scenario's first curve."""
+        try:
+            self.scenario = chosen([scenario])[0]
+        except InputError as error:
+            self.error = str(error)
+        else:
+            self.choose_condition(self.scenario.conditions[0].name)
+
+    def choose_condition(self, name: str) -> None:
+        """Take the controls from a curve of the scenario."""
+        self.condition = name
+        self.change(self._form(self.form.n, self.form.seed))
+        self.chosen = self._first_learner()
+
+    def change(self, form: Form) -> None:
+        """Play what the form says, from its beginning; say why if it cannot be played."""
+        self.form = form
+        try:
+            player = Player(form.game(), form.seed)
+        except InputError as error:
+            self.error = str(error)
+            return
+        self.player.close()
+        self.player = player
+        self.error = ""
+        self.goal = None
+        self._owed = 0.0
+        self.chosen = min(self.chosen, form.n - 1)
+
+    def change_swarm(self, k: int, **changes: Any) -> None:
+        """Change controls of a swarm (from 0); other shares bring the nearest N that suits them."""
+        form = self.form.with_swarm(k, **changes)
+        if "share" in changes:
+            form = form._replace(multiple_of=None)
+            form = form._replace(n=_suitable(form.n, _step(form)))
+        self.change(form)
+
+    def change_swarms(self, swarms: int) -> None:
+        """Have so many swarms: drop the last, or add some that avoid."""
+        kept = self.form.swarms[:swarms]
+        added = (SwarmForm(),) * (swarms - len(kept))
+        form = self.form._replace(swarms=kept + added, multiple_of=None)
+        self.change(form._replace(n=_suitable(form.n, _step(form))))
+
+    def choose(self, robot: int) -> None:
+        """Look into a robot."""
+        self.chosen = min(max(0, robot), self.player.game.size - 1)
+
+    def step_of_n(self) -> int:
+        """Return what the number of robots must be a multiple of."""
+        return _step(self.form)
+
+    def _form(self, n: int = _USUAL_N, seed: int = 0) -> Form:
+        condition = next(c for c in self.scenario.conditions if c.name == self.condition)
+        form = Form.of_condition(condition, n, seed)
+        return form._replace(n=_suitable(n, _step(form)))
+
+    def _first_learner(self) -> int:
+        """Return the first robot that learns, which has most to show; the first of all if none does."""
+        robots = self.player.model.robots
+        return next((robot.index for robot in robots if isinstance(robot.policy, Learner)), 0)
+
+    # Playing.
+
+    @property
+    def active(self) -> bool:
+        """Whether the game moves by itself."""
+        return self.goal is not None or (self.playing and not self.player.ended)
+
+    def play(self) -> None:
+        """Let the game run, or stop it."""
+        self.playing = not self.playing
+        self._owed = 0.0
+
+    def step(self) -> None:
+        """Stop, and play one control period."""
+        self.playing = False
+        self.player.advance(0.0)
+
+    def reset(self) -> None:
+        """Go back to the beginning, that of learning."""
+        self.goal = None
+        self.player.seek(-self.player.begin)
+
+    def go_to(self, time: float) -> None:
+        """Go to an instant as fast as can be, in `tick`s."""
+        self.goal = time
+        if time < self.player.time:
+            self.reset()
+            self.goal = time
+
+    def next_conflict(self) -> None:
+        """Stop, and play on until the chosen robot begins a conflict."""
+        self.playing = False
+        self.player.to_next_conflict(self.chosen)
+
+    def tick(self, elapsed: float) -> bool:
+        """Let a time pass on the wall.
+
+        Parameters
+        ----------
+        elapsed : float
+            Seconds.
+
+        Returns
+        -------
+        bool
+            Whether the game has moved.
+        """
+        player = self.player
+        if self.goal is not None:
+            return self._hurry(player, self.goal)
+        if not self.playing or player.ended:
+            return False
+        self._owed += elapsed * self.speed
+        period = player.game.parameters.period
+        due = int(self._owed / period + 1e-9) * period
+        if due == 0.0:
+            return False
+        self._owed -= due
+        player.advance(due)
+        return True
+
+    def _hurry(self, player: Player, goal: float) -> bool:
+        enough = clock.monotonic() + _HASTE
+        while player.time < goal and not player.ended and clock.monotonic() < enough:
+            player.seek(min(goal, player.time + _STRIDE))
+        if self.goal == goal and (player.time >= goal or player.ended):
+            self.goal = None
+        return True
+
+
+def _step(form: Form) -> int:
+    shares = [swarm.share for swarm in form.swarms]
+    return form.multiple_of or max(1, sum(shares) // (math.gcd(*shares) or 1))
+
+
+def _suitable(n: int, step: int) -> int:
+    """Return the multiple of `step` that is nearest to `n`, at least one."""
+    return max(1, round(n / step)) * step
