@@ -3,7 +3,8 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from itertools import combinations
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ Floats = NDArray[np.float64]
 SWARM_COLOURS: Final = ("#008000", "#d50000", "#1e40ff", "#ff8c00", "#800080", "#8b4513")
 """Of S1, S2 …: green and red as in the source, then the order of the figures."""
 _IN_ACTION: Final = "#ffc107"
+_WALL, _STATION, _PUCK, _WHITE = "#333333", "#2b2b2b", "#111111", "#ffffff"
 _SMOOTH: Final = 3
 """Pixels are the mean of this many times as many, each way."""
 _MARGIN: Final = 0.03
@@ -106,12 +108,12 @@ class ArenaPainter:
                 self._ring(pen, x, y, 0.97 * radius, 0.2 * radius)
             dx, dy = math.cos(angle), math.sin(angle)
             ends = [self._at(x + r * radius * dx, y + r * radius * dy) for r in (0.3, 0.95)]
-            pen.line([*ends[0], *ends[1]], fill="white", width=max(1, round(0.18 * radius * self._scale)))
+            pen.line([*ends[0], *ends[1]], fill=_WHITE, width=max(1, round(0.18 * radius * self._scale)))
             if carries:
-                self._disc(pen, x, y, 0.42 * radius, "white")
-                self._disc(pen, x, y, 0.32 * radius, "#111")
+                self._disc(pen, x, y, 0.42 * radius, _WHITE)
+                self._disc(pen, x, y, 0.32 * radius, _PUCK)
         reduced = picture.reduce(_SMOOTH)
-        whole = Image.new("RGB", (self.width, self.height), "white")
+        whole = Image.new("RGB", (self.width, self.height), _WHITE)
         whole.paste(reduced, (0, self.height - self.width))
         self._write_header(ImageDraw.Draw(whole), title, pucks)
         return whole
@@ -119,7 +121,7 @@ class ArenaPainter:
     def _write_header(self, pen: ImageDraw.ImageDraw, title: str, pucks: Sequence[int]) -> None:
         middle = (self.height - self.width) / 2
         edge = self.width * _MARGIN
-        pen.text((edge, middle), title, fill="#333", font=self._font, anchor="lm")
+        pen.text((edge, middle), title, fill=_WALL, font=self._font, anchor="lm")
         right = self.width - edge
         for k, score in reversed(list(enumerate(pucks))):
             text = f"S{k + 1} {score}"
@@ -129,13 +131,16 @@ class ArenaPainter:
     def _paint_ground(self) -> Image.Image:
         ground = self.ground
         side = _SMOOTH * self.width
-        picture = Image.new("RGB", (side, side), "white")
+        picture = Image.new("RGB", (side, side), _WHITE)
         pen = ImageDraw.Draw(picture)
         wall = 0.02 * ground.half
-        corners = [*self._at(-ground.half - wall, ground.half + wall), *self._at(ground.half + wall, -ground.half - wall)]
-        pen.rectangle(corners, outline="#333", width=round(wall * self._scale))
+        corners = [
+            *self._at(-ground.half - wall, ground.half + wall),
+            *self._at(ground.half + wall, -ground.half - wall),
+        ]
+        pen.rectangle(corners, outline=_WALL, width=round(wall * self._scale))
         for x, y in ground.stations:
-            self._disc(pen, x, y, ground.station_radius, "#2b2b2b")
+            self._disc(pen, x, y, ground.station_radius, _STATION)
         font = ImageFont.load_default(0.1 * self._scale)
         for k, (x, y) in enumerate(ground.bases):
             colour = ImageColor.getrgb(_colour(k))
@@ -148,7 +153,9 @@ class ArenaPainter:
         middle = _SMOOTH * self.width / 2
         return middle + self._scale * float(x), middle - self._scale * float(y)
 
-    def _disc(self, pen: ImageDraw.ImageDraw, x: float, y: float, radius: float, colour: Any) -> None:
+    def _disc(
+        self, pen: ImageDraw.ImageDraw, x: float, y: float, radius: float, colour: str | tuple[int, ...]
+    ) -> None:
         pen.ellipse(self._box(x, y, radius), fill=colour)
 
     def _ring(self, pen: ImageDraw.ImageDraw, x: float, y: float, radius: float, width: float) -> None:
@@ -162,3 +169,23 @@ class ArenaPainter:
 
 def _colour(swarm: int) -> str:
     return SWARM_COLOURS[swarm % len(SWARM_COLOURS)]
+
+
+def _blend(one: str, other: str, part: float) -> tuple[int, ...]:
+    """Return one colour with a part of another in it."""
+    pairs = zip(ImageColor.getrgb(one), ImageColor.getrgb(other), strict=True)
+    return tuple(round((1 - part) * a + part * b) for a, b in pairs)
+
+
+def palette() -> Image.Image:
+    """Return an image whose palette has the colours of all pictures, and what smooth edges make of them.
+
+    A palette taken from a film's first picture would lack whatever appears later.
+    """
+    plain = (_WHITE, _STATION, _IN_ACTION, *SWARM_COLOURS)
+    colours = [_blend(a, b, part) for a, b in combinations(plain, 2) for part in (0.0, 0.25, 0.5, 0.75)]
+    colours += [_blend(_WHITE, colour, 0.22) for colour in SWARM_COLOURS]
+    colours += [_blend(name, name, 0.0) for name in (*plain, _WALL, _PUCK)]
+    image = Image.new("P", (1, 1))
+    image.putpalette([value for colour in dict.fromkeys(colours) for value in colour])
+    return image

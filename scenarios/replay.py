@@ -1,4 +1,4 @@
-"""Replay: a run found again by its row, and its conflicts told one by one.
+"""Replay: the conflicts of a run, told one by one.
 
 A run is a game and a seed, and a game with a seed has one course only, so nothing has to be recorded to see
 it again: it is played again.
@@ -6,15 +6,12 @@ it again: it is played again.
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from agents.bandit import Bandit
-from agents.errors import InputError
 from agents.learner import Learner
 from agents.selection import FORGOTTEN, UCB
-from scenarios.catalogue import CATALOGUE
-from scenarios.runs import Run, digest
+from scenarios.runs import Run
 
 if TYPE_CHECKING:
     from model.foraging import GameModel
@@ -27,7 +24,7 @@ class Arm(NamedTuple):
     ----------
     action : str
         Name of the action.
-    count : float
+    n : float
         N(a), discounted where the rule discounts.
     q : float
         Q(a) (Eq. 4.15), NaN if it was never tried.
@@ -37,7 +34,7 @@ class Arm(NamedTuple):
     """
 
     action: str
-    count: float
+    n: float
     q: float
     bound: float
 
@@ -58,7 +55,7 @@ class ConflictAccount(NamedTuple):
     x, y : float
         Where (m).
     known : tuple of Arm
-        What the robot knew at that moment of its actions against that swarm; empty if it learns nothing there.
+        What the robot knew then of its actions against that swarm; empty if it learns nothing of it.
     action : str
         What it chose.
     t_a, t_p : float
@@ -163,38 +160,47 @@ def conflicts_of(run: Run) -> list[ConflictAccount]:
         Agent._ids.pop(model, None)  # Mesa's table of the class would keep the model alive
 
 
-def run_in(directory: Path, name: str) -> Run:
-    """Return the run of a row in a results directory.
+TOLD: Final = (
+    "t (s)",
+    "who",
+    "met",
+    "where (m)",
+    "known: Q (N)",
+    "chose",
+    "T(a)",
+    "T(p)",
+    "n′",
+    "R",
+    "Q after",
+)
+"""Headings of what `told` returns; times in seconds."""
+
+
+def told(account: ConflictAccount, begin: float) -> list[str]:
+    """Return a conflict as the cells of a table.
 
     Parameters
     ----------
-    directory : Path
-        That ``kswarms run`` wrote.
-    name : str
-        Digest of the run, or as much of its beginning as is in no other's.
-
-    Raises
-    ------
-    InputError
-        If there is no such run, or what the catalogue has under its scenario is another game.
+    account : ConflictAccount
+        The conflict.
+    begin : float
+        When the measured game began, from which its time is counted (s).
     """
-    import pyarrow.compute as pc
-    import pyarrow.parquet as pq
+    return [
+        f"{account.start - begin:.1f}",
+        f"{account.robot} of S{account.swarm}",
+        f"{account.opponent} of S{account.opponent_swarm}",
+        f"{account.x:.2f}, {account.y:.2f}",
+        ", ".join(f"{arm.action} {number(arm.q)} ({arm.n:.4g})" for arm in account.known) or "–",
+        account.action,
+        f"{account.t_a:.1f}",
+        f"{account.t_p:.1f}",
+        str(account.active),
+        number(account.reward),
+        number(account.q),
+    ]
 
-    path = directory / "runs.parquet"
-    if not path.is_file():
-        raise InputError("results", str(directory), "must be a directory that `kswarms run` wrote")
-    table = pq.read_table(path, columns=["run", "scenario", "condition", "n", "seed"])
-    rows = table.filter(pc.starts_with(table["run"], name)).to_pylist()
-    if not name or len({row["run"] for row in rows}) != 1:
-        found = "none" if not rows else "several"
-        raise InputError("run", name, f"must name one run of {path}, column run; it names {found}")
-    row = rows[0]
-    scenario = CATALOGUE.get(row["scenario"])
-    if scenario is None:
-        raise InputError("run", name, f"is of scenario {row['scenario']}, which is not in the catalogue")
-    game = scenario.game(row["condition"], row["n"])
-    if digest(game, row["seed"]) != row["run"]:
-        raise InputError("run", name, "was another game: of another version, or with another policy file")
-    labels = tuple((each["scenario"], each["condition"]) for each in rows)
-    return Run(row["run"], game, row["seed"], tuple(dict.fromkeys(labels)))
+
+def number(value: float) -> str:
+    """Return a number with three decimals, a dash for none."""
+    return "–" if math.isnan(value) else f"{value:.3f}"

@@ -13,6 +13,7 @@ import typer
 from agents.errors import InputError
 from scenarios.cli.calibrate import calibrate
 from scenarios.cli.catalogue import list_scenarios, show
+from scenarios.cli.conflicts import conflicts
 from scenarios.cli.explore import explore
 from scenarios.cli.film import film
 from scenarios.cli.run import run
@@ -98,3 +99,4 @@ app.command(epilog="Example: kswarms calibrate --free friction,gamma --densities
 )
 app.command(epilog="Example: kswarms explore fig-6.4b")(explore)
 app.command(epilog="Example: kswarms film fig-6.1c --n 50 --to 120 --out fight.gif")(film)
+app.command(epilog="Example: kswarms conflicts fig-6.4b --n 6 --robot 3 --from 0")(conflicts)

@@ -1,13 +1,12 @@
 """``explore``: the live page."""
 
-from functools import partial
 from importlib.util import find_spec
 from typing import Annotated
 
 import typer
 
 from agents.errors import InputError
-from scenarios.cli.options import RunDigest, Watched, watched
+from scenarios.cli.options import RunDigest, Watched, asked
 
 
 def explore(
@@ -24,7 +23,6 @@ def explore(
     from scenarios.explore.server import serve
     from scenarios.explore.session import Session
 
-    scenario, results = watched(what, run)
-    begin = partial(Session, scenario, run, results) if run else partial(Session, scenario)
-    begin().close()  # a mistake is told here, not in the page
-    serve(begin, port, not no_browser, lambda address: typer.echo(f"page: {address}  (Ctrl-C ends it)"))
+    start = asked(what, run)
+    Session(start).close()  # a mistake is told here, not in the page
+    serve(start, port, not no_browser, lambda address: typer.echo(f"page: {address}  (Ctrl-C ends it)"))

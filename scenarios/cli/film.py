@@ -24,7 +24,8 @@ def film(
     n: Robots = None,
     seed: Seed = None,
     begin: Annotated[
-        float, typer.Option("--from", help="First instant: seconds of the measured game, negative in the learning.")
+        float,
+        typer.Option("--from", help="First instant: seconds of the measured game, negative in the learning."),
     ] = 0.0,
     end: Annotated[
         float | None, typer.Option("--to", help="Last instant (s). [default: the end of the game]")
@@ -36,14 +37,20 @@ def film(
         int | None, typer.Option(metavar="K", help="Write a contact sheet of K instants instead, a PNG.")
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="An .mp4 or .gif, with --sheet a .png. [default: by the game]")
+        Path | None,
+        typer.Option(metavar="FILE", help="An .mp4 or .gif, with --sheet a .png. [default: by the game]"),
     ] = None,
 ) -> None:
     """Film a game of a scenario, or a run of a results directory, from above."""
     found = one_run(what, run, condition, n, seed)
     game = found.game
     end = game.duration if end is None else end
-    _check("from", begin, -game.learning <= begin <= game.duration, f"must be in {-game.learning} to {game.duration}")
+    _check(
+        "from",
+        begin,
+        -game.learning <= begin <= game.duration,
+        f"must be in {-game.learning} to {game.duration}",
+    )
     _check("to", end, begin < end <= game.duration, f"must be in {begin} to {game.duration}")
     _check("speed", speed, 0 < speed < math.inf, "must be greater than 0")
     _check("fps", fps, 1 <= fps <= 60, "must be in 1 to 60")

@@ -8,7 +8,6 @@ import typer
 
 from agents.errors import InputError
 from scenarios.choice import chosen
-from scenarios.replay import run_in
 from scenarios.runs import Run, digest
 
 FIRST_SCENARIO: Final = "fig-6.1c"
@@ -38,21 +37,25 @@ Watched = Annotated[
     str | None, typer.Argument(metavar="[ID|DIR]", help="A scenario; with --run, a directory of results.")
 ]
 RunDigest = Annotated[
-    str, typer.Option(metavar="DIGEST", help="Play a run of DIR again: its digest, or the beginning of it.")
+    str, typer.Option(metavar="DIGEST", help="A run of DIR, played again: the column `run` of its tables.")
 ]
 
 
-def watched(what: str | None, run: str) -> tuple[str, str]:
-    """Return the scenario and the directory of results that are asked for, one of them empty.
+def asked(what: str | None, run: str) -> str | Run:
+    """Return what is to be watched: a scenario as `scenarios.choice.chosen` takes it, or a run.
 
     Raises
     ------
     InputError
-        If a run is asked for without its directory.
+        If a run is asked for that no directory has.
     """
-    if run and what is None:
-        raise InputError("run", run, "needs the directory of results that has it, after the options")
-    return ("", what or "") if run else (what or FIRST_SCENARIO, "")
+    if not run:
+        return what or FIRST_SCENARIO
+    if what is None:
+        raise InputError("run", run, "needs the directory of results that has it")
+    from scenarios.ledger import find_run
+
+    return find_run(Path(what), run)
 
 
 ConditionName = Annotated[
@@ -70,13 +73,13 @@ def one_run(what: str | None, run: str, condition: str | None, n: int | None, se
     InputError
         If there is no such run, or a run of a directory is asked to be another.
     """
-    scenario, results = watched(what, run)
-    if run:
+    start = asked(what, run)
+    if isinstance(start, Run):
         for field, value in (("condition", condition), ("n", n), ("seed", seed)):
             if value is not None:
                 raise InputError(field, value, "must not be given with a run, which has its own")
-        return run_in(Path(results), run)
-    found = chosen([scenario])[0]
+        return start
+    found = chosen([start])[0]
     name = found.conditions[0].name if condition is None else condition
     if n is None:
         n = min(found.densities, key=lambda density: abs(density - USUAL_N))

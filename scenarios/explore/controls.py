@@ -34,7 +34,7 @@ _KNOWN_POLICIES: Final = [name for name in POLICIES if name != "learned"] + ["mi
 
 
 @solara.component
-def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:  # noqa: N802
+def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     """Show all controls of a session."""
     beat.get()
     form = session.form
@@ -58,7 +58,10 @@ def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:  #
     with solara.Row(gap="6px"):
         swarms = len(form.swarms)
         solara.Button(
-            "Add a swarm", small=True, text=True, on_click=lambda: act(lambda: session.change_swarms(swarms + 1))
+            "Add a swarm",
+            small=True,
+            text=True,
+            on_click=lambda: act(lambda: session.change_swarms(swarms + 1)),
         )
         solara.Button(
             f"Remove S{swarms}",
@@ -71,7 +74,10 @@ def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:  #
     with solara.Details("World"):
         _World(session, change)
     with solara.Details("Drawing"):
-        for name, label in (("show_sectors", "Conflict sectors of all"), ("show_sensors", "Sensors of the chosen")):
+        for name, label in (
+            ("show_sectors", "Conflict sectors of all"),
+            ("show_sensors", "Sensors of the chosen"),
+        ):
             solara.Checkbox(
                 label=label,
                 value=getattr(session, name),
@@ -83,19 +89,18 @@ def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:  #
 def _Scenario(session: Session, act: Act) -> None:
     solara.v.Combobox(
         label="Scenario, or a TOML file",
-        v_model=session.scenario.id,
+        v_model=session.source,
         items=list(CATALOGUE),
         on_v_model=lambda text: act(lambda: session.load(text or "")),
-        hint=session.scenario.title,
+        hint=session.title,
         persistent_hint=True,
     )
-    names = [condition.name for condition in session.scenario.conditions]
-    if len(names) > 1:
+    if len(session.curves) > 1:
         solara.Select(
             "Condition",
-            value=session.condition,
-            values=names,
-            on_value=lambda name: act(lambda: session.choose_condition(name)),
+            value=session.curve,
+            values=list(session.curves),
+            on_value=lambda name: act(lambda: session.choose_curve(name)),
         )
 
 
@@ -116,7 +121,12 @@ def _Swarm(session: Session, k: int, act: Act) -> None:
         )
         solara.InputInt("Share of the robots", swarm.share, on_value=lambda share: change(share=share))
         solara.SliderFloat(
-            f"Drive in P {swarm.drive:g}", swarm.drive, min=0.05, max=1.0, step=0.05, on_value=lambda drive: change(drive=drive)
+            f"Drive in P {swarm.drive:g}",
+            swarm.drive,
+            min=0.05,
+            max=1.0,
+            step=0.05,
+            on_value=lambda drive: change(drive=drive),
         )
         solara.SliderFloat(
             f"Drive in A {swarm.drive_action:g}",
@@ -137,7 +147,8 @@ def _Learning(session: Session, act: Act) -> None:
 
     def change(part: str, name: str = "", **arguments: float) -> None:
         swarms = tuple(
-            swarm._replace(policy=with_learning(swarm.policy, part, name, **arguments)) for swarm in form.swarms
+            swarm._replace(policy=with_learning(swarm.policy, part, name, **arguments))
+            for swarm in form.swarms
         )
         act(lambda: session.change(form._replace(swarms=swarms)))
 
@@ -150,7 +161,12 @@ def _Learning(session: Session, act: Act) -> None:
         )
         if learning.delta is not None:
             solara.SliderFloat(
-                f"Δ = {learning.delta:g}", learning.delta, min=0.0, max=0.5, step=0.005, on_value=lambda delta: change("reward", delta=delta)
+                f"Δ = {learning.delta:g}",
+                learning.delta,
+                min=0.0,
+                max=0.5,
+                step=0.005,
+                on_value=lambda delta: change("reward", delta=delta),
             )
         solara.Select(
             "Selection rule",
@@ -160,7 +176,12 @@ def _Learning(session: Session, act: Act) -> None:
         )
         if learning.gamma is not None:
             solara.SliderFloat(
-                f"γ = {learning.gamma:g}", learning.gamma, min=0.0, max=1.0, step=0.005, on_value=lambda gamma: change("rule", gamma=gamma)
+                f"γ = {learning.gamma:g}",
+                learning.gamma,
+                min=0.0,
+                max=1.0,
+                step=0.005,
+                on_value=lambda gamma: change("rule", gamma=gamma),
             )
         solara.InputFloat(
             "Time to learn (s)",
@@ -189,10 +210,10 @@ def _World(session: Session, change: Callable[..., None]) -> None:
                     parameters=with_parameter(form.parameters, name, value)
                 ),
             )
-    solara.InputText(
-        "Parameters", form.parameters, on_value=lambda text: change(parameters=text)
+    solara.InputText("Parameters", form.parameters, on_value=lambda text: change(parameters=text))
+    solara.Select(
+        "Layout", value=form.layout, values=list(LAYOUTS), on_value=lambda name: change(layout=name)
     )
-    solara.Select("Layout", value=form.layout, values=list(LAYOUTS), on_value=lambda name: change(layout=name))
     solara.Select("Body", value=form.body, values=list(BODIES), on_value=lambda name: change(body=name))
     solara.InputFloat("Length of the game (s)", form.duration, on_value=lambda s: change(duration=s))
     solara.InputInt("Ends with this puck (0: none)", form.puck_limit, on_value=lambda n: change(puck_limit=n))

@@ -163,7 +163,9 @@ def learning_of(policies: list[str]) -> Learning | None:
                 reward = parse_call("reward", call.arguments.get("reward", "wlu"))
                 rule = parse_call("rule", call.arguments.get("rule", "ucb"))
                 delta, gamma = (
-                    _number(kinds[each.name].model_fields, each.arguments, name) if each.name in kinds else None
+                    _number(kinds[each.name].model_fields, each.arguments, name)
+                    if each.name in kinds
+                    else None
                     for kinds, each, name in ((REWARDS, reward, "delta"), (RULES, rule, "gamma"))
                 )
                 return Learning(reward.name, rule.name, delta, gamma)

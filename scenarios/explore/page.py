@@ -15,6 +15,7 @@ from scenarios.explore.controls import Controls
 from scenarios.explore.panels import Panels
 from scenarios.explore.session import SPEEDS, Session
 from scenarios.explore.views import Json, frame_of, scene_of
+from scenarios.runs import Run
 
 FASTEST: Final = 1 / 25
 """Between two frames, at least (s)."""
@@ -29,8 +30,8 @@ _STYLE: Final = """
 .kswarms-swarm { padding: 4px 0 4px 10px; margin: 4px 0; }
 """
 
-first_session: Callable[[], Session] = Session
-"""Makes the session that a new page begins with; the command line sets it."""
+start: str | Run = "fig-6.1c"
+"""What a new page begins with; the command line sets it."""
 
 
 class Beats:
@@ -52,14 +53,16 @@ class Beats:
 
 
 @solara.component_vue("arena.vue")
-def _Arena(scene: Json, frame: Json, event_drawn: Callable[[int], None], event_choose: Callable[[int], None]) -> None:
+def _Arena(
+    scene: Json, frame: Json, event_drawn: Callable[[int], None], event_choose: Callable[[int], None]
+) -> None:
     """Draw the arena on a canvas of the browser."""
 
 
 @solara.component
-def Page() -> None:  # noqa: N802  # components are written like classes, as solara has it
+def Page() -> None:  # components are written like classes, as solara has it
     """Show a game and its controls."""
-    session = solara.use_memo(lambda: first_session(), [])  # a partial has no name, which solara asks for
+    session = solara.use_memo(lambda: Session(start), [])
     beats = solara.use_memo(Beats, [])
     solara.use_effect(lambda: _run(session, beats), [])
 
@@ -152,7 +155,9 @@ def _Transport(
         solara.Button(label, icon_name=icon, on_click=lambda: act(action), small=True, **rest)
 
     with solara.Row(gap="6px", style={"flex-wrap": "wrap", "align-items": "center"}):
-        button("Pause" if runs else "Play", "mdi-pause" if runs else "mdi-play", session.play, color="primary")
+        button(
+            "Pause" if runs else "Play", "mdi-pause" if runs else "mdi-play", session.play, color="primary"
+        )
         button("Step", "mdi-step-forward", session.step)
         button("Reset", "mdi-skip-backward", session.reset)
         button("Next conflict", "mdi-target", session.next_conflict)

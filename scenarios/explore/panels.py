@@ -9,7 +9,7 @@ import solara
 from scenarios.explore.robot import RobotView, look_into
 from scenarios.explore.session import Session
 from scenarios.explore.views import curves_of
-from scenarios.replay import Arm, ConflictAccount
+from scenarios.replay import TOLD, Arm, number, told
 
 Act = Callable[[Callable[[], None]], None]
 
@@ -22,7 +22,7 @@ def _Table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
 
 
 @solara.component
-def Panels(session: Session, beat: solara.Reactive[int], act: Act) -> None:  # noqa: N802
+def Panels(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     """Show the panels, one at a time."""
     tab = solara.use_reactive(0)
     with solara.v.Tabs(v_model=tab.value, on_v_model=tab.set, grow=True):
@@ -81,7 +81,7 @@ def _Robot(session: Session, beat: solara.Reactive[int], act: Act) -> None:
 def _facts(view: RobotView) -> list[list[str]]:
     swarms = range(1, len(view.t_a) + 1)
     return [
-        ["robot", f"{view.index} of S{view.swarm}, {view.policy}"],
+        ["robot", f"{view.robot} of S{view.swarm}, {view.policy}"],
         ["doing", f"{view.doing}{', with a puck' if view.carrying else ''}"],
         ["met last", view.opponent or "nobody"],
         ["pucks", str(view.pucks)],
@@ -92,11 +92,7 @@ def _facts(view: RobotView) -> list[list[str]]:
 
 
 def _arm_row(arm: Arm) -> list[str]:
-    return [arm.action, f"{arm.count:g}", _number(arm.q), _number(arm.bound - arm.q), _number(arm.bound)]
-
-
-def _number(value: float) -> str:
-    return "–" if math.isnan(value) else f"{value:.3f}"
+    return [arm.action, f"{arm.n:g}", number(arm.q), number(arm.bound - arm.q), number(arm.bound)]
 
 
 @solara.component
@@ -110,25 +106,4 @@ def _Conflicts(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     if not accounts:
         solara.Text("No conflict has ended yet.")
         return
-    _Table(
-        header=["t (s)", "who", "met", "where (m)", "known", "chose", "T(a)", "T(p)", "n′", "R", "Q after"],
-        rows=[conflict_row(account, player.begin) for account in accounts],
-    )
-
-
-def conflict_row(account: ConflictAccount, begin: float) -> list[str]:
-    """Return the cells of a conflict: times from the beginning of the measured game."""
-    known = ", ".join(f"{arm.action} {_number(arm.q)} ({arm.count:g})" for arm in account.known)
-    return [
-        f"{account.start - begin:.1f}",
-        f"{account.robot} S{account.swarm}",
-        f"{account.opponent} S{account.opponent_swarm}",
-        f"{account.x:.2f}, {account.y:.2f}",
-        known or "–",
-        account.action,
-        f"{account.t_a:.1f}",
-        f"{account.t_p:.1f}",
-        str(account.active),
-        _number(account.reward),
-        _number(account.q),
-    ]
+    _Table(header=TOLD, rows=[told(account, player.begin) for account in accounts])

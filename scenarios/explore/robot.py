@@ -46,7 +46,7 @@ class RobotView(NamedTuple):
 
     Attributes
     ----------
-    index, swarm : int
+    robot, swarm : int
         Number from 0; swarm-ID from 1.
     policy : str
         As it was asked for.
@@ -73,7 +73,7 @@ class RobotView(NamedTuple):
         For each swarm learned about, from 1, what it knows of its actions.
     """
 
-    index: int
+    robot: int
     swarm: int
     policy: str
     doing: str

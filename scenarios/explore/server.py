@@ -7,18 +7,18 @@ import webbrowser
 from collections.abc import Callable
 
 from agents.errors import InputError
-from scenarios.explore.session import Session
+from scenarios.runs import Run
 
 HOST = "127.0.0.1"
 
 
-def serve(first_session: Callable[[], Session], port: int, open_browser: bool, ready: Callable[[str], None]) -> None:
+def serve(start: str | Run, port: int, open_browser: bool, ready: Callable[[str], None]) -> None:
     """Serve the page until interrupted.
 
     Parameters
     ----------
-    first_session : callable
-        Makes the session that a new page begins with.
+    start : str or Run
+        What a new page begins with, as `scenarios.explore.session.Session` takes it.
     port : int
         Where; 0 for any that is free.
     open_browser : bool
@@ -44,10 +44,11 @@ def serve(first_session: Callable[[], Session], port: int, open_browser: bool, r
     settings.main.mode = "production"  # else it would watch the files of the package for changes
     settings.theme.show_banner = False
     settings.theme.title = "kswarms explore"
-    from scenarios.explore import page
     from solara.server.starlette import app
 
-    page.first_session = first_session
+    from scenarios.explore import page
+
+    page.start = start
 
     server = uvicorn.Server(uvicorn.Config(app, log_level="error", access_log=False))
 

@@ -5,19 +5,18 @@ A control that says something impossible leaves the game as it is and says why i
 
 import math
 import time as clock
-from pathlib import Path
 from typing import Any, Final
 
 from agents.errors import InputError
 from agents.learner import Learner
 from scenarios.choice import chosen
+from scenarios.description import Condition
 from scenarios.explore.form import Form, SwarmForm
 from scenarios.explore.player import Player
-from scenarios.replay import run_in
+from scenarios.runs import Run
 
 SPEEDS: Final = (1, 2, 5, 10, 20, 50, 100)
 """Seconds of the game in a second of the clock on the wall."""
-FIRST_SCENARIO: Final = "fig-6.1c"
 _USUAL_N: Final = 20
 _HASTE: Final = 0.2
 """For how long a game may be played at full speed until it is shown again (s)."""
@@ -30,17 +29,19 @@ class Session:
 
     Parameters
     ----------
-    scenario : str
-        Where it begins: what `scenarios.choice.chosen` takes.
-    run, results : str
-        Digest of a run and the directory that has it; the session then begins with that run.
+    start : str or Run
+        What it begins with: a scenario as `scenarios.choice.chosen` takes it, or a run.
 
     Attributes
     ----------
-    scenario : Scenario
-        That was asked for last; the first of a table's.
-    condition : str
-        Name of the curve that the form was taken from, empty where there is one.
+    source : str
+        Scenario or run that the form was taken from.
+    title : str
+        What that is, in a line.
+    curves : dict of str to Condition
+        The curves of it, by their names; none of a run.
+    curve : str
+        Name of the one that the form was taken from.
     form : Form
         What the controls say.
     error : str
@@ -64,7 +65,7 @@ class Session:
         If there is no such scenario or run.
     """
 
-    def __init__(self, scenario: str = FIRST_SCENARIO, run: str = "", results: str = "") -> None:
+    def __init__(self, start: str | Run) -> None:
         self.playing = False
         self.speed = 10
         self.goal: float | None = None
@@ -72,15 +73,15 @@ class Session:
         self.show_sensors = True
         self.error = ""
         self._owed = 0.0
-        if run:
-            found = run_in(Path(results), run)
-            name, self.condition = found.labels[0]
-            self.scenario = chosen([name])[0]
-            self.form = Form.of_game(found.game, found.seed)
+        if isinstance(start, Run):
+            self.source = f"run {start.digest}"
+            self.title = ", ".join(" ".join(label).strip() for label in start.labels)
+            self.curves: dict[str, Condition] = {}
+            self.curve = ""
+            self.form = Form.of_game(start.game, start.seed)
         else:
-            self.scenario = chosen([scenario])[0]
-            self.condition = self.scenario.conditions[0].name
-            self.form = self._form()
+            self._open(start)
+            self.form = self._form(_USUAL_N, 0)
         self.player = Player(self.form.game(), self.form.seed)
         self.chosen = self._first_learner()
 
@@ -94,17 +95,29 @@ class Session:
     def load(self, scenario: str) -> None:
         """Take the controls from a scenario's first curve."""
         try:
-            self.scenario = chosen([scenario])[0]
+            self._open(scenario)
         except InputError as error:
             self.error = str(error)
         else:
-            self.choose_condition(self.scenario.conditions[0].name)
+            self.choose_curve(self.curve)
 
-    def choose_condition(self, name: str) -> None:
+    def choose_curve(self, name: str) -> None:
         """Take the controls from a curve of the scenario."""
-        self.condition = name
+        self.curve = name
         self.change(self._form(self.form.n, self.form.seed))
         self.chosen = self._first_learner()
+
+    def _open(self, source: str) -> None:
+        scenarios = chosen([source])
+        several = len(scenarios) > 1
+        self.source = source
+        self.title = "; ".join(scenario.title for scenario in scenarios)
+        self.curves = {
+            f"{scenario.id} {condition.name}".strip() if several else condition.name: condition
+            for scenario in scenarios
+            for condition in scenario.conditions
+        }
+        self.curve = next(iter(self.curves))
 
     def change(self, form: Form) -> None:
         """Play what the form says, from its beginning; say why if it cannot be played."""
@@ -144,9 +157,8 @@ class Session:
         """Return what the number of robots must be a multiple of."""
         return _step(self.form)
 
-    def _form(self, n: int = _USUAL_N, seed: int = 0) -> Form:
-        condition = next(c for c in self.scenario.conditions if c.name == self.condition)
-        form = Form.of_condition(condition, n, seed)
+    def _form(self, n: int, seed: int) -> Form:
+        form = Form.of_condition(self.curves[self.curve], n, seed)
         return form._replace(n=_suitable(n, _step(form)))
 
     def _first_learner(self) -> int:

@@ -1,6 +1,6 @@
 """The game as plain data for the browser: the arena's scene and frames, the curves' options."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
 from analysis.arena import SWARM_COLOURS
@@ -59,39 +59,39 @@ _DASHES: Final = ("solid", "dashed", "dotted")
 
 def curves_of(history: Sequence[Sample]) -> dict[str, Json]:
     """Return, by the heading of each chart, its option for ECharts."""
-    swarms = range(len(history[0].pucks))
+    times = [round(sample.time, 1) for sample in history]
 
-    def each(of: Callable[[Sample, int], float]) -> list[Json]:
-        return [_line(f"S{k + 1}", k, history, lambda sample, k=k: of(sample, k)) for k in swarms]
-
-    shares: list[Json] = []
-    for k in swarms:
-        shares.append(_line(f"S{k + 1} inter", k, history, lambda sample, k=k: sample.inter[k]))
-        shares.append(_line(f"S{k + 1} intra", k, history, lambda sample, k=k: sample.intra[k], "dotted"))
-    charts = {
-        "Pucks": _chart(each(lambda sample, k: sample.pucks[k])),
-        "SUD (pucks)": _chart(each(lambda sample, k: sample.sud[k])),
-        "Share of time in conflict": _chart(shares, most=1.0),
-    }
-    pairs = history[-1].fights
-    if pairs:
-        learned = [
-            _line(
-                f"S{own} against S{other}" if own != other else f"S{own} within",
-                own - 1,
-                history,
-                lambda sample, pair=(own, other): sample.fights[pair],
-                _DASHES[number % len(_DASHES)],
-            )
-            for number, (own, other) in enumerate(pairs)
+    def lines(what: str, columns: Iterable[Sequence[float]], dash: str = "solid") -> list[Json]:
+        return [
+            _line(f"S{k + 1}{what}", k, times, values, dash)
+            for k, values in enumerate(zip(*columns, strict=True))
         ]
-        charts["Share of robots whose best action is to fight"] = _chart(learned, most=1.0)
+
+    charts = {
+        "Pucks": _chart(lines("", (sample.pucks for sample in history))),
+        "SUD (pucks)": _chart(lines("", (sample.sud for sample in history))),
+        "Share of time in conflict": _chart(
+            lines(" inter", (sample.inter for sample in history))
+            + lines(" intra", (sample.intra for sample in history), "dotted"),
+            most=1.0,
+        ),
+    }
+    learned = [
+        _line(
+            f"S{own} against S{other}" if own != other else f"S{own} within",
+            own - 1,
+            times,
+            [sample.fights[own, other] for sample in history],
+            _DASHES[number % len(_DASHES)],
+        )
+        for number, (own, other) in enumerate(history[0].fights)
+    ]
+    if learned:
+        charts["Share of learners whose best action is to fight"] = _chart(learned, most=1.0)
     return charts
 
 
-def _line(
-    name: str, swarm: int, history: Sequence[Sample], value: Callable[[Sample], float], dash: str = "solid"
-) -> Json:
+def _line(name: str, swarm: int, times: Sequence[float], values: Sequence[float], dash: str) -> Json:
     return {
         "name": name,
         "type": "line",
@@ -99,7 +99,7 @@ def _line(
         "animation": False,
         "color": colour_of(swarm),
         "lineStyle": {"type": dash, "width": 2},
-        "data": [[round(sample.time, 1), round(value(sample), 4)] for sample in history],
+        "data": [[time, round(value, 4)] for time, value in zip(times, values, strict=True)],
     }
 
 
