@@ -45,13 +45,11 @@ def film(
     found = one_run(what, run, condition, n, seed)
     game = found.game
     end = game.duration if end is None else end
+    first = 0.0 - game.learning
+    _check("from", begin, first <= begin < game.duration, f"must be at least {first}, below {game.duration}")
     _check(
-        "from",
-        begin,
-        -game.learning <= begin <= game.duration,
-        f"must be in {-game.learning} to {game.duration}",
+        "to", end, begin < end <= game.duration, f"must be greater than {begin}, and at most {game.duration}"
     )
-    _check("to", end, begin < end <= game.duration, f"must be in {begin} to {game.duration}")
     _check("speed", speed, 0 < speed < math.inf, "must be greater than 0")
     _check("fps", fps, 1 <= fps <= 60, "must be in 1 to 60")
     _check("size", size, 64 <= size <= 4096, "must be in 64 to 4096")

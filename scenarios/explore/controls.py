@@ -40,9 +40,10 @@ def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     form = session.form
 
     def change(**changes: Any) -> None:
-        act(lambda: session.change(form._replace(**changes)))
+        # The form as it is then: the page may not have been drawn again since the last change.
+        act(lambda: session.change(session.form._replace(**changes)))
 
-    _Scenario(session, act)
+    _scenario(session, act)
     step = session.step_of_n()
     solara.SliderInt(
         f"Robots N = {form.n}",
@@ -54,25 +55,25 @@ def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     )
     solara.InputInt("Seed", form.seed, on_value=lambda seed: change(seed=seed))
     for k in range(len(form.swarms)):
-        _Swarm(session, k, act)
+        _swarm(session, k, act)
     with solara.Row(gap="6px"):
         swarms = len(form.swarms)
         solara.Button(
             "Add a swarm",
             small=True,
             text=True,
-            on_click=lambda: act(lambda: session.change_swarms(swarms + 1)),
+            on_click=lambda: act(lambda: session.change_swarms(len(session.form.swarms) + 1)),
         )
         solara.Button(
             f"Remove S{swarms}",
             small=True,
             text=True,
             disabled=swarms == 1,
-            on_click=lambda: act(lambda: session.change_swarms(swarms - 1)),
+            on_click=lambda: act(lambda: session.change_swarms(len(session.form.swarms) - 1)),
         )
-    _Learning(session, act)
+    _learning(session, act)
     with solara.Details("World"):
-        _World(session, change)
+        _world(session, change)
     with solara.Details("Drawing"):
         for name, label in (
             ("show_sectors", "Conflict sectors of all"),
@@ -85,8 +86,10 @@ def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:
             )
 
 
-@solara.component
-def _Scenario(session: Session, act: Act) -> None:
+# No components of their own: such a one is drawn anew only where its arguments are others.
+
+
+def _scenario(session: Session, act: Act) -> None:
     solara.v.Combobox(
         label="Scenario, or a TOML file",
         v_model=session.source,
@@ -104,8 +107,7 @@ def _Scenario(session: Session, act: Act) -> None:
         )
 
 
-@solara.component
-def _Swarm(session: Session, k: int, act: Act) -> None:
+def _swarm(session: Session, k: int, act: Act) -> None:
     swarm = session.form.swarms[k]
 
     def change(**changes: Any) -> None:
@@ -138,8 +140,7 @@ def _Swarm(session: Session, k: int, act: Act) -> None:
         )
 
 
-@solara.component
-def _Learning(session: Session, act: Act) -> None:
+def _learning(session: Session, act: Act) -> None:
     form = session.form
     learning = learning_of([swarm.policy for swarm in form.swarms])
     if learning is None:
@@ -148,9 +149,9 @@ def _Learning(session: Session, act: Act) -> None:
     def change(part: str, name: str = "", **arguments: float) -> None:
         swarms = tuple(
             swarm._replace(policy=with_learning(swarm.policy, part, name, **arguments))
-            for swarm in form.swarms
+            for swarm in session.form.swarms
         )
-        act(lambda: session.change(form._replace(swarms=swarms)))
+        act(lambda: session.change(session.form._replace(swarms=swarms)))
 
     with solara.Details("Learning", expand=True):
         solara.Select(
@@ -186,12 +187,11 @@ def _Learning(session: Session, act: Act) -> None:
         solara.InputFloat(
             "Time to learn (s)",
             form.learning,
-            on_value=lambda learning: act(lambda: session.change(form._replace(learning=learning))),
+            on_value=lambda seconds: act(lambda: session.change(session.form._replace(learning=seconds))),
         )
 
 
-@solara.component
-def _World(session: Session, change: Callable[..., None]) -> None:
+def _world(session: Session, change: Callable[..., None]) -> None:
     form = session.form
     parameters: Parameters | None
     try:
@@ -207,7 +207,7 @@ def _World(session: Session, change: Callable[..., None]) -> None:
                 max=greatest,
                 step=step,
                 on_value=lambda value, name=name: change(
-                    parameters=with_parameter(form.parameters, name, value)
+                    parameters=with_parameter(session.form.parameters, name, value)
                 ),
             )
     solara.InputText("Parameters", form.parameters, on_value=lambda text: change(parameters=text))

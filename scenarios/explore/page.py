@@ -7,6 +7,7 @@ next, so a slow browser sees fewer frames of the same game, never a growing dela
 import threading
 import time
 from collections.abc import Callable
+from itertools import count
 from typing import Any, Final
 
 import solara
@@ -38,17 +39,22 @@ class Beats:
     """What tells the page that there is something new to show."""
 
     def __init__(self) -> None:
+        # A number of its own for each beat: two threads that add to one could both arrive at the same.
+        self._numbers = count(1)
         self.frame = solara.Reactive(0)
         self.panels = solara.Reactive(0)
         self.controls = solara.Reactive(0)
         self.drawn = threading.Event()
         self.wake = threading.Event()
 
+    def beat(self, *parts: solara.Reactive[int]) -> None:
+        """Have some parts of the page shown anew."""
+        for part in parts:
+            part.value = next(self._numbers)
+
     def changed(self) -> None:
-        """Have everything shown anew."""
-        self.frame.value += 1
-        self.panels.value += 1
-        self.controls.value += 1
+        """Have all of it shown anew."""
+        self.beat(self.frame, self.panels, self.controls)
         self.wake.set()
 
 
@@ -101,12 +107,12 @@ def _run(session: Session, beats: Beats) -> Callable[[], None]:
             last = now
             if moved:
                 beats.drawn.clear()
-                beats.frame.value += 1
+                beats.beat(beats.frame)
                 if not session.active:
                     beats.changed()
                 elif now - shown >= _PANELS_EVERY:
                     shown = now
-                    beats.panels.value += 1
+                    beats.beat(beats.panels)
                 beats.drawn.wait(_GIVE_UP)
             time.sleep(max(0.0, FASTEST - (time.monotonic() - now)))
 

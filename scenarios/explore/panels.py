@@ -44,8 +44,7 @@ def _Curves(session: Session, beat: solara.Reactive[int]) -> None:
         solara.FigureEcharts(option=option, attributes={"style": "height: 190px;"}, responsive=True)
 
 
-@solara.component
-def _Chooser(session: Session, act: Act) -> None:
+def _chooser(session: Session, act: Act) -> None:
     solara.InputInt(
         f"Robot, 0 to {session.player.game.size - 1} (or click on one)",
         session.chosen,
@@ -57,7 +56,7 @@ def _Chooser(session: Session, act: Act) -> None:
 @solara.component
 def _Robot(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     beat.get()
-    _Chooser(session, act)
+    _chooser(session, act)
     view = look_into(session.player.model, session.chosen)
     _Table(header=["", ""], rows=_facts(view))
     solara.Text("Sensors: free distance (m), active ones bold", classes=["kswarms-heading"])
@@ -99,7 +98,7 @@ def _arm_row(arm: Arm) -> list[str]:
 def _Conflicts(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     beat.get()
     everyone = solara.use_reactive(False)
-    _Chooser(session, act)
+    _chooser(session, act)
     solara.Checkbox(label="Those of all robots", value=everyone)
     player = session.player
     accounts = player.conflicts_of(None if everyone.value else session.chosen, _CONFLICTS_SHOWN)

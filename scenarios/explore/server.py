@@ -31,10 +31,13 @@ def serve(start: str | Run, port: int, open_browser: bool, ready: Callable[[str]
     InputError
         If the port is taken.
     """
+    refusal = InputError("port", port, "must be a free port of this machine, 0 for any")
+    if not 0 <= port <= 65535:
+        raise refusal
     try:
         listener = socket.create_server((HOST, port))
-    except (OSError, OverflowError):
-        raise InputError("port", port, "must be a free port of this machine, 0 for any") from None
+    except OSError:
+        raise refusal from None
     address = f"http://localhost:{listener.getsockname()[1]}"
     os.environ["SOLARA_APP"] = "scenarios.explore.page"
     import uvicorn
