@@ -13,7 +13,7 @@ from agents.selection import RULES
 from model.arena import LAYOUTS
 from model.parameters import Parameters, parse_parameters
 from scenarios.catalogue import CATALOGUE
-from scenarios.explore.form import learning_of, with_learning, with_parameter
+from scenarios.explore.form import learning_of
 from scenarios.explore.session import Session
 from scenarios.explore.views import colour_of
 
@@ -73,7 +73,7 @@ def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:
         )
     _learning(session, act)
     with solara.Details("World"):
-        _world(session, change)
+        _world(session, change, act)
     with solara.Details("Drawing"):
         for name, label in (
             ("show_sectors", "Conflict sectors of all"),
@@ -147,11 +147,7 @@ def _learning(session: Session, act: Act) -> None:
         return
 
     def change(part: str, name: str = "", **arguments: float) -> None:
-        swarms = tuple(
-            swarm._replace(policy=with_learning(swarm.policy, part, name, **arguments))
-            for swarm in session.form.swarms
-        )
-        act(lambda: session.change(session.form._replace(swarms=swarms)))
+        act(lambda: session.change_learning(part, name, **arguments))
 
     with solara.Details("Learning", expand=True):
         solara.Select(
@@ -191,7 +187,7 @@ def _learning(session: Session, act: Act) -> None:
         )
 
 
-def _world(session: Session, change: Callable[..., None]) -> None:
+def _world(session: Session, change: Callable[..., None], act: Act) -> None:
     form = session.form
     parameters: Parameters | None
     try:
@@ -206,9 +202,7 @@ def _world(session: Session, change: Callable[..., None]) -> None:
                 min=least,
                 max=greatest,
                 step=step,
-                on_value=lambda value, name=name: change(
-                    parameters=with_parameter(session.form.parameters, name, value)
-                ),
+                on_value=lambda value, name=name: act(lambda: session.change_parameter(name, value)),
             )
     solara.InputText("Parameters", form.parameters, on_value=lambda text: change(parameters=text))
     solara.Select(

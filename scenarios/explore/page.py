@@ -145,7 +145,7 @@ def _ArenaView(session: Session, beats: Beats, act: Callable[[Callable[[], None]
 def _Message(session: Session, beat: solara.Reactive[int]) -> None:
     beat.get()
     if session.error:
-        solara.Error(f"{session.error} (shown is the game before)", icon=False, dense=True)
+        solara.Error(session.error, icon=False, dense=True)
 
 
 @solara.component

@@ -8,7 +8,7 @@ import solara
 
 from scenarios.explore.robot import RobotView, look_into
 from scenarios.explore.session import Session
-from scenarios.explore.views import curves_of
+from scenarios.explore.views import Json, curves_of
 from scenarios.replay import TOLD, Arm, number, told
 
 Act = Callable[[Callable[[], None]], None]
@@ -19,6 +19,11 @@ _CONFLICTS_SHOWN: Final = 60
 @solara.component_vue("table.vue")
 def _Table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
     """Show a table of texts; a star before a cell makes it bold."""
+
+
+@solara.component_vue("chart.vue")
+def _Chart(option: Json) -> None:
+    """Draw a chart of ECharts."""
 
 
 @solara.component
@@ -41,7 +46,7 @@ def _Curves(session: Session, beat: solara.Reactive[int]) -> None:
     beat.get()
     for heading, option in curves_of(session.player.history).items():
         solara.Text(heading, classes=["kswarms-heading"])
-        solara.FigureEcharts(option=option, attributes={"style": "height: 190px;"}, responsive=True)
+        _Chart(option=option)
 
 
 def _chooser(session: Session, act: Act) -> None:

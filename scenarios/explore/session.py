@@ -5,13 +5,15 @@ A control that says something impossible leaves the game as it is and says why i
 
 import math
 import time as clock
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any, Final
 
 from agents.errors import InputError
 from agents.learner import Learner
 from scenarios.choice import chosen
 from scenarios.description import Condition
-from scenarios.explore.form import Form, SwarmForm
+from scenarios.explore.form import Form, SwarmForm, with_learning, with_parameter
 from scenarios.explore.player import Player
 from scenarios.runs import Run
 
@@ -45,7 +47,7 @@ class Session:
     form : Form
         What the controls say.
     error : str
-        Why that cannot be played; empty if it can.
+        Why that cannot be played, or why the game failed, in a line; empty if neither.
     player : Player
         The game.
     playing : bool
@@ -72,6 +74,7 @@ class Session:
         self.show_sectors = False
         self.show_sensors = True
         self.error = ""
+        self._failed = False
         self._owed = 0.0
         if isinstance(start, Run):
             self.source = f"run {start.digest}"
@@ -94,11 +97,8 @@ class Session:
 
     def load(self, scenario: str) -> None:
         """Take the controls from a scenario's first curve."""
-        try:
+        with self._told():
             self._open(scenario)
-        except InputError as error:
-            self.error = str(error)
-        else:
             self.choose_curve(self.curve)
 
     def choose_curve(self, name: str) -> None:
@@ -122,17 +122,29 @@ class Session:
     def change(self, form: Form) -> None:
         """Play what the form says, from its beginning; say why if it cannot be played."""
         self.form = form
-        try:
+        with self._told():
             player = Player(form.game(), form.seed)
-        except InputError as error:
-            self.error = str(error)
-            return
-        self.player.close()
-        self.player = player
-        self.error = ""
-        self.goal = None
-        self._owed = 0.0
-        self.chosen = min(self.chosen, form.n - 1)
+            self.player.close()
+            self.player = player
+            self.error = ""
+            self._failed = False
+            self.goal = None
+            self._owed = 0.0
+            self.chosen = min(self.chosen, form.n - 1)
+
+    def change_parameter(self, name: str, value: float) -> None:
+        """Change a parameter of the world."""
+        with self._told():
+            self.change(self.form._replace(parameters=with_parameter(self.form.parameters, name, value)))
+
+    def change_learning(self, part: str, name: str = "", **arguments: float) -> None:
+        """Change the reward or the rule of all learners, as `scenarios.explore.form.with_learning`."""
+        with self._told():
+            swarms = (
+                swarm._replace(policy=with_learning(swarm.policy, part, name, **arguments))
+                for swarm in self.form.swarms
+            )
+            self.change(self.form._replace(swarms=tuple(swarms)))
 
     def change_swarm(self, k: int, **changes: Any) -> None:
         """Change controls of a swarm (from 0); other shares bring the nearest N that suits them."""
@@ -166,11 +178,24 @@ class Session:
         robots = self.player.model.robots
         return next((robot.index for robot in robots if isinstance(robot.policy, Learner)), 0)
 
+    @contextmanager
+    def _told(self) -> Iterator[None]:
+        """Tell what goes wrong in a line instead of letting it go on."""
+        try:
+            yield
+        except InputError as error:
+            self.error = str(error)
+        except Exception as error:  # noqa: BLE001  # a policy of the user's own may fail in any way
+            self._failed = True
+            self.error = f"the game failed: {type(error).__name__}: {error}"
+
     # Playing.
 
     @property
     def active(self) -> bool:
         """Whether the game moves by itself."""
+        if self._failed:
+            return False
         return self.goal is not None or (self.playing and not self.player.ended)
 
     def play(self) -> None:
@@ -181,12 +206,16 @@ class Session:
     def step(self) -> None:
         """Stop, and play one control period."""
         self.playing = False
-        self.player.advance(0.0)
+        with self._told():
+            self.player.advance(0.0)
 
     def reset(self) -> None:
         """Go back to the beginning, that of learning."""
         self.goal = None
         self.player.seek(-self.player.begin)
+        if self._failed:
+            self._failed = False
+            self.error = ""
 
     def go_to(self, time: float) -> None:
         """Go to an instant as fast as can be, in `tick`s."""
@@ -198,7 +227,8 @@ class Session:
     def next_conflict(self) -> None:
         """Stop, and play on until the chosen robot begins a conflict."""
         self.playing = False
-        self.player.to_next_conflict(self.chosen)
+        with self._told():
+            self.player.to_next_conflict(self.chosen)
 
     def tick(self, elapsed: float) -> bool:
         """Let a time pass on the wall.
@@ -214,23 +244,25 @@ class Session:
             Whether the game has moved.
         """
         player = self.player
+        if not self.active:
+            return False
         if self.goal is not None:
             return self._hurry(player, self.goal)
-        if not self.playing or player.ended:
-            return False
         self._owed += elapsed * self.speed
         period = player.game.parameters.period
         due = int(self._owed / period + 1e-9) * period
         if due == 0.0:
             return False
         self._owed -= due
-        player.advance(due)
+        with self._told():
+            player.advance(due)
         return True
 
     def _hurry(self, player: Player, goal: float) -> bool:
         enough = clock.monotonic() + _HASTE
-        while player.time < goal and not player.ended and clock.monotonic() < enough:
-            player.seek(min(goal, player.time + _STRIDE))
+        with self._told():
+            while player.time < goal and not player.ended and clock.monotonic() < enough:
+                player.seek(min(goal, player.time + _STRIDE))
         if self.goal == goal and (player.time >= goal or player.ended):
             self.goal = None
         return True

@@ -214,7 +214,6 @@ def test_a_mistake_is_one_line_on_the_page(show: Callable[[str], Shown]) -> None
     shown = show("fig-6.1c")
     shown.find(ipyvuetify.Combobox, "S2: policy").v_model = "atack"
     assert "policy='atack': must be one of avoid" in shown.texts()
-    assert "(shown is the game before)" in shown.texts()
     shown.find(ipyvuetify.Combobox, "S2: policy").v_model = "attack"
     assert "atack" not in shown.texts()
     shown.find(ipyvuetify.Combobox, "Scenario").v_model = None

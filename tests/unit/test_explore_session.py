@@ -171,3 +171,30 @@ def test_what_is_learned_has_a_chart_with_a_line_for_each_pair_of_swarms() -> No
     learned = charts["Share of learners whose best action is to fight"]
     assert [line["name"] for line in learned["series"]] == ["S2 against S1", "S2 within"]
     assert learned["yAxis"]["max"] == 1.0
+
+
+def test_a_game_that_fails_stops_and_says_why(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    def choose(_opponent: int) -> None:
+        raise ZeroDivisionError("by zero")
+
+    for robot in session.player.model.robots:
+        monkeypatch.setattr(robot.policy, "choose", choose)
+    session.play()
+    while session.active:
+        session.tick(1.0)
+    assert session.error == "the game failed: ZeroDivisionError: by zero"
+    session.go_to(500.0)
+    assert not session.tick(1.0)  # a game that failed is over
+    session.reset()  # with new robots
+    assert (session.error, session.player.time) == ("", 0.0)
+    session.step()
+    assert session.player.time == 0.1
+
+
+def test_a_text_that_cannot_be_read_does_not_stop_the_other_controls(session: Session) -> None:
+    session.change_swarm(0, policy="learner(rule=")
+    session.change_learning("reward", delta=0.2)
+    assert session.error.startswith("policy='learner(rule=': must be name or name(")
+    session.change(session.form._replace(parameters="fited"))
+    session.change_parameter("friction", 0.2)
+    assert session.error.startswith("parameters='fited': must begin with one of")
