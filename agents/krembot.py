@@ -19,7 +19,7 @@ from agents.fleet import ACTION, HOME, HOME_TURN, HOMING_ERROR, IDLE, LEG, LEG_O
 from agents.habits import Conflict, Habits
 from agents.learner import Learner
 from agents.policies import Policy
-from agents.sensors import SECTOR, heads_for, walls_met, wrap
+from agents.sensors import SECTOR, heads_for, read_robots, walls_met, wrap
 from agents.streams import Purpose, Streams
 
 _STRAIGHT: Final = 1e-9
@@ -234,7 +234,7 @@ class Krembot(ContinuousSpaceAgent):
         self.conflicts[swarm] += 1
         if self._log is not None:
             x, y = self._fleet.positions[index].tolist()
-            self._open = (index, other, now, x, y, action, active)
+            self._open = (index, other, now, x, y, action, active, self._read_robots(other))
         if action.direction != TOWARDS:
             angle = self._vacant_direction(vacant)
         if abs(angle) > _STRAIGHT:
@@ -291,6 +291,12 @@ class Krembot(ContinuousSpaceAgent):
         self._timer = None
         self._is_over = True
 
+    def _read_robots(self, met: int) -> tuple[int, ...]:
+        """Return the robot that each sensor reads as it meets one of them, −1 for none."""
+        row, habits = self._fleet.robots[self.index], self._habits
+        where = row["forward_x"], row["forward_y"], self._fleet.positions
+        return read_robots(self.index, met, *where, habits.radius, habits.half, habits.active_range)
+
     def _vacant_direction(self, vacant: int) -> float:
         """Return the angle of the most vacant sensor from the heading (rad), ties broken at random."""
         angles = _VACANT_ANGLES[vacant]
@@ -300,13 +306,18 @@ class Krembot(ContinuousSpaceAgent):
 
     def _drive_action(self, event: Timeout | None) -> None:
         if event is self._timer and self._action is not None:
-            self._drive(ACTION, self._stride_action)
+            # `_drive` and `_wait` written out: every conflict comes through here.
+            index = self.index
+            self._phase[index] = ACTION
+            self._stride[index] = self._stride_action
+            self._turn_rate[index] = 0.0
             name = self._action.name
-            self._wait(self._action_periods[name], self._action_over, name)
+            timer = self._timer = Timeout(self._env, self._action_periods[name], name)
+            timer.callbacks.append(self._action_over)
 
     def _action_over(self, event: Timeout) -> None:
         if event is self._timer:
-            now = cast(int, self._env.now)
+            now: int = self._env.now  # type: ignore[assignment]  # whole periods; `cast` would cost a call
             elapsed = self._open_t_a = now - self._since
             self.t_a[self._opponent_swarm] += elapsed
             self._since = now
@@ -331,7 +342,7 @@ class Krembot(ContinuousSpaceAgent):
     def _turn(self, phase: int, angle: float, then: Callable[[Any], None]) -> None:
         """Turn in place, in whole periods, and call `then`."""
         index = self.index
-        periods = max(1, math.ceil(abs(angle) / self._turn_step - _STRAIGHT))
+        periods = math.ceil(abs(angle) / self._turn_step - _STRAIGHT) or 1
         self._phase[index] = phase
         self._stride[index] = 0.0
         self._turn_rate[index] = angle / periods

@@ -58,10 +58,10 @@ class UCB(Rule):
 
     def bounds(self, bandit: Bandit) -> list[float]:
         """Return Q(a) + sqrt(γ ln N / N(a)) of each arm; all must have been tried."""
-        scale = self.gamma * math.log(sum(bandit.count))
+        scale, sqrt = self.gamma * math.log(sum(bandit.count)), math.sqrt
         return [
-            reward / time + math.sqrt(scale / count)
-            for reward, time, count in zip(bandit.reward, bandit.time, bandit.count, strict=True)
+            reward / time + sqrt(scale / count)
+            for reward, time, count in zip(bandit.reward, bandit.time, bandit.count)  # noqa: B905  # one bandit's
         ]
 
     def prefer(self, bandit: Bandit, draws: Generator) -> int:

@@ -254,11 +254,11 @@ class GameModel(mesa.Model):
         if self.ended:
             return
         env, kernel = self.env, self._kernel
-        now = cast(int, env.now)
+        now: int = env.now  # type: ignore[assignment]  # whole periods; `cast` would cost a call
         while True:
             if self._due > 0:
                 self._decide(now, self._due)
-            tick, self._due = kernel.advance(now, cast(int, env.peek()))
+            tick, self._due = kernel.advance(now, env.peek())  # type: ignore[arg-type]
             if tick > now or self._due == 0:
                 break
         self._motion.happen_in(tick - now)
@@ -317,5 +317,7 @@ def _habits(game: Game) -> Habits:
         half=game.side / 2,
         wall_reach=body.radius + body.sensing_scale * parameters.wall_distance,
         wall_half_angle=parameters.wall_half_angle,
+        radius=body.radius,
+        active_range=body.sensing_scale * parameters.active_range,
         escape_away=parameters.wall_escape == "away",
     )

@@ -62,6 +62,8 @@ class ConflictAccount(NamedTuple):
         T(a) and T(p) (s).
     active : int
         Sensors that were active, n'_i.
+    seen : tuple of tuple of int
+        For each swarm, the robots that they read.
     reward, q : float
         R (s) and Q of the action after it; NaN where nothing was learned.
     """
@@ -79,6 +81,7 @@ class ConflictAccount(NamedTuple):
     t_a: float
     t_p: float
     active: int
+    seen: tuple[tuple[int, ...], ...]
     reward: float
     q: float
 
@@ -196,6 +199,7 @@ def told(account: ConflictAccount, begin: float) -> list[str]:
         f"{account.t_a:.1f}",
         f"{account.t_p:.1f}",
         str(account.active),
+        ", ".join(f"{len(own)} of S{k}" for k, own in enumerate(account.seen, 1) if own),
         number(account.reward),
         number(account.q),
     ]

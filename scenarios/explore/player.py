@@ -14,9 +14,10 @@ import numpy as np
 from mesa import Agent
 
 from agents.fleet import ACTION, Floats, Integers
+from agents.theory.swarms import swarm_utility_difference
 from model.foraging import GameModel
 from model.game import Game
-from model.recording import policy_rows, swarm_utility_difference
+from model.recording import policy_rows
 from scenarios.replay import Accounts, ConflictAccount
 
 MOST_SAMPLES: Final = 400
