@@ -173,6 +173,7 @@ TOLD: Final = (
     "T(a)",
     "T(p)",
     "n′",
+    "saw",
     "R",
     "Q after",
 )
