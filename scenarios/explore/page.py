@@ -80,7 +80,7 @@ def Page() -> None:  # components are written like classes, as solara has it
     solara.Style(_STYLE)
     with solara.Sidebar():
         Controls(session, beats.controls, act)
-    with solara.v.Row(classes=["kswarms-page"]):
+    with solara.v.Row(class_="kswarms-page"):
         with solara.v.Col(cols=12, md=7):
             _Message(session, beats.controls)
             _ArenaView(session, beats, act)
@@ -170,18 +170,17 @@ def _Transport(
         if player.time < 0:
             button("Skip learning", "mdi-fast-forward", lambda: session.go_to(0.0), color="secondary")
         button("To the end", "mdi-skip-forward", lambda: session.go_to(player.game.duration))
-    with solara.Row(gap="12px", style={"flex-wrap": "wrap", "align-items": "center", "padding-top": "6px"}):
-        solara.Text("Speed ×")
-        solara.ToggleButtonsSingle(
-            session.speed,
-            values=list(SPEEDS),
-            on_value=lambda speed: act(lambda: setattr(session, "speed", speed)),
-            dense=True,
-        )
+    with solara.Row(gap="16px", style={"flex-wrap": "wrap", "padding-top": "6px"}):
+        with solara.Div(style={"width": "9rem"}):
+            solara.Select(
+                "Speed (× real time)",
+                value=session.speed,
+                values=list(SPEEDS),
+                on_value=lambda speed: act(lambda: setattr(session, "speed", speed)),
+            )
         with solara.Div(style={"width": "9rem"}):
             solara.InputFloat(
                 "Go to t (s)",
-                session.goal,
-                optional=True,
-                on_value=lambda time: act(lambda: session.go_to(time)) if time is not None else None,
+                round(player.time, 1),
+                on_value=lambda time: act(lambda: session.go_to(time)),
             )

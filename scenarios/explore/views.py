@@ -58,8 +58,14 @@ _DASHES: Final = ("solid", "dashed", "dotted")
 
 
 def curves_of(history: Sequence[Sample]) -> dict[str, Json]:
-    """Return, by the heading of each chart, its option for ECharts."""
-    times = [round(sample.time, 1) for sample in history]
+    """Return, by the heading of each chart, its option for ECharts.
+
+    What counts anew with the measured game is shown from there on once it has begun; what is learned, whole.
+    """
+    everything = history
+    if history[-1].time > 0:
+        history = [sample for sample in history if sample.time >= 0]
+    times = [sample.time for sample in history]
 
     def lines(what: str, columns: Iterable[Sequence[float]], dash: str = "solid") -> list[Json]:
         return [
@@ -80,8 +86,8 @@ def curves_of(history: Sequence[Sample]) -> dict[str, Json]:
         _line(
             f"S{own} against S{other}" if own != other else f"S{own} within",
             own - 1,
-            times,
-            [sample.fights[own, other] for sample in history],
+            [sample.time for sample in everything],
+            [sample.fights[own, other] for sample in everything],
             _DASHES[number % len(_DASHES)],
         )
         for number, (own, other) in enumerate(history[0].fights)
@@ -99,7 +105,7 @@ def _line(name: str, swarm: int, times: Sequence[float], values: Sequence[float]
         "animation": False,
         "color": colour_of(swarm),
         "lineStyle": {"type": dash, "width": 2},
-        "data": [[time, round(value, 4)] for time, value in zip(times, values, strict=True)],
+        "data": [[round(time, 1), round(value, 4)] for time, value in zip(times, values, strict=True)],
     }
 
 

@@ -122,7 +122,7 @@ def test_buttons_play_step_and_reset_the_game(show: Callable[[str], Shown]) -> N
     _wait(lambda: shown.arena().frame["time"] == 0.0)
     shown.click("Next conflict")
     _wait(lambda: shown.arena().frame["action"][session.chosen] == 1)
-    shown.find(ipyvuetify.BtnToggle, "").v_model = 6
+    shown.find(ipyvuetify.Select, "Speed").v_model = 100
     assert session.speed == 100
     shown.click("To the end")
     _wait(lambda: shown.arena().frame["ended"] == "time")

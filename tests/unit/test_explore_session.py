@@ -173,6 +173,17 @@ def test_what_is_learned_has_a_chart_with_a_line_for_each_pair_of_swarms() -> No
     assert learned["yAxis"]["max"] == 1.0
 
 
+def test_once_the_game_has_begun_only_what_is_learned_is_shown_from_before_it() -> None:
+    session = Session("fig-6.4b")
+    session.change(session.form._replace(n=6, learning=20.0))
+    first = {name: chart["series"][0]["data"][0][0] for name, chart in curves_of(session.player.history).items()}
+    assert set(first.values()) == {-20.0}
+    session.player.seek(30.0)
+    first = {name: chart["series"][0]["data"][0][0] for name, chart in curves_of(session.player.history).items()}
+    assert first.pop("Share of learners whose best action is to fight") == -20.0
+    assert set(first.values()) == {0.0}
+
+
 def test_a_game_that_fails_stops_and_says_why(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
     def choose(_opponent: int) -> None:
         raise ZeroDivisionError("by zero")
