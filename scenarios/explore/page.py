@@ -92,29 +92,8 @@ def Page() -> None:  # components are written like classes, as solara has it
 def _run(session: Session, beats: Beats) -> Callable[[], None]:
     """Start the thread that lets the game run; return what ends it."""
     over = threading.Event()
-
-    def run() -> None:
-        last = shown = time.monotonic()
-        while not over.is_set():
-            if not session.active:
-                beats.wake.wait()
-                beats.wake.clear()
-                last = time.monotonic()
-                continue
-            now = time.monotonic()
-            # A pause of the machine does not make the game jump.
-            moved = session.tick(min(now - last, 0.25))
-            last = now
-            if moved:
-                beats.drawn.clear()
-                beats.beat(beats.frame)
-                if not session.active:
-                    beats.changed()
-                elif now - shown >= _PANELS_EVERY:
-                    shown = now
-                    beats.beat(beats.panels)
-                beats.drawn.wait(_GIVE_UP)
-            time.sleep(max(0.0, FASTEST - (time.monotonic() - now)))
+    thread = threading.Thread(target=let_run, args=(session, beats, over), daemon=True)
+    thread.start()
 
     def end() -> None:
         over.set()
@@ -123,9 +102,32 @@ def _run(session: Session, beats: Beats) -> Callable[[], None]:
         thread.join()
         session.close()
 
-    thread = threading.Thread(target=run, daemon=True)
-    thread.start()
     return end
+
+
+def let_run(session: Session, beats: Beats, over: threading.Event) -> None:
+    """Let a game run, and have it shown, until it is over with the page."""
+    last = shown = time.monotonic()
+    while not over.is_set():
+        if not session.active:
+            beats.wake.wait()
+            beats.wake.clear()
+            last = time.monotonic()
+            continue
+        now = time.monotonic()
+        # A pause of the machine does not make the game jump.
+        moved = session.tick(min(now - last, 0.25))
+        last = now
+        if moved:
+            beats.drawn.clear()
+            beats.beat(beats.frame)
+            if not session.active:
+                beats.changed()
+            elif now - shown >= _PANELS_EVERY:
+                shown = now
+                beats.beat(beats.panels)
+            beats.drawn.wait(_GIVE_UP)
+        time.sleep(max(0.0, FASTEST - (time.monotonic() - now)))
 
 
 @solara.component

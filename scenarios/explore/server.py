@@ -3,11 +3,16 @@
 import os
 import socket
 import threading
+import time
 import webbrowser
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from agents.errors import InputError
 from scenarios.runs import Run
+
+if TYPE_CHECKING:
+    import uvicorn
 
 HOST = "127.0.0.1"
 
@@ -31,14 +36,33 @@ def serve(start: str | Run, port: int, open_browser: bool, ready: Callable[[str]
     InputError
         If the port is taken.
     """
+    with _listen(port) as listener:
+        address = f"http://localhost:{listener.getsockname()[1]}"
+        server = _server(start)
+
+        def announce() -> None:
+            while not server.started:
+                time.sleep(0.05)
+            ready(address)
+            if open_browser:
+                webbrowser.open(address)
+
+        threading.Thread(target=announce, daemon=True).start()
+        server.run(sockets=[listener])
+
+
+def _listen(port: int) -> socket.socket:
     refusal = InputError("port", port, "must be a free port of this machine, 0 for any")
     if not 0 <= port <= 65535:
         raise refusal
     try:
-        listener = socket.create_server((HOST, port))
+        return socket.create_server((HOST, port))
     except OSError:
         raise refusal from None
-    address = f"http://localhost:{listener.getsockname()[1]}"
+
+
+def _server(start: str | Run) -> "uvicorn.Server":
+    """Return the server of the page, set up to speak to this machine alone."""
     os.environ["SOLARA_APP"] = "scenarios.explore.page"
     import uvicorn
     from solara.server import settings
@@ -52,17 +76,4 @@ def serve(start: str | Run, port: int, open_browser: bool, ready: Callable[[str]
     from scenarios.explore import page
 
     page.start = start
-
-    server = uvicorn.Server(uvicorn.Config(app, log_level="error", access_log=False))
-
-    def announce() -> None:
-        while not server.started:
-            if server.should_exit:
-                return
-            threading.Event().wait(0.05)
-        ready(address)
-        if open_browser:
-            webbrowser.open(address)
-
-    threading.Thread(target=announce, daemon=True).start()
-    server.run(sockets=[listener])
+    return uvicorn.Server(uvicorn.Config(app, log_level="error", access_log=False))

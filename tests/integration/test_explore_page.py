@@ -1,6 +1,8 @@
 """The page, rendered without a browser: its widgets do what they say, and it lets its game go."""
 
 import gc
+import socket
+import threading
 import time
 import weakref
 from collections.abc import Callable, Iterator
@@ -12,6 +14,7 @@ solara = pytest.importorskip("solara", reason="needs the extra `explore`")
 
 import ipyvuetify  # noqa: E402  # which comes with solara
 
+from agents.errors import InputError  # noqa: E402
 from scenarios.explore import page  # noqa: E402
 from scenarios.explore.session import Session  # noqa: E402
 
@@ -262,9 +265,67 @@ def test_the_drawing_has_conflict_sectors_on_demand(show: Callable[[str], Shown]
     assert shown.arena().frame["sensors"] is None
 
 
-def test_a_page_that_is_closed_ends_its_thread_and_frees_its_game(show: Callable[[str], Shown]) -> None:
-    import threading
+def test_what_runs_is_shown_frame_by_frame_and_the_panels_less_often(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(page, "_GIVE_UP", 0.0)
+    monkeypatch.setattr(page, "_PANELS_EVERY", 0.2)
+    session, beats, over = Session("fig-6.1c"), page.Beats(), threading.Event()
+    seen: list[float] = []
+    panels: list[float] = []
+    beats.frame.subscribe(lambda _: seen.append(session.player.time))
+    beats.panels.subscribe(lambda _: panels.append(session.player.time))
+    session.change(session.form._replace(duration=8.0))
 
+    def begin() -> None:
+        session.play()
+        beats.wake.set()
+
+    def end(number: int) -> None:
+        over.set()
+        beats.wake.set()
+
+    beats.controls.subscribe(end)  # which beats when the game has ended
+    threading.Timer(0.05, begin).start()
+    page.let_run(session, beats, over)
+    assert seen == sorted(seen)
+    assert seen[-1] == 8.0
+    assert 0 < len(panels) < len(seen)
+
+
+# solara's server still imports it; the version that it asks for has it.
+@pytest.mark.filterwarnings("ignore:websockets.legacy is deprecated:DeprecationWarning")
+def test_a_page_is_served_where_it_is_said_to_be(monkeypatch: pytest.MonkeyPatch) -> None:
+    import uvicorn
+    from solara.server import settings
+
+    from scenarios.explore import server
+
+    told, opened = threading.Event(), threading.Event()
+    lines: list[str] = []
+
+    def run(own: uvicorn.Server, sockets: list[socket.socket]) -> None:
+        own.started = True
+        assert told.wait(10)
+        assert opened.wait(10)
+        (listener,) = sockets
+        assert lines == [f"http://localhost:{listener.getsockname()[1]}"]
+
+    def ready(address: str) -> None:
+        lines.append(address)
+        told.set()
+
+    monkeypatch.setattr(uvicorn.Server, "run", run)
+    monkeypatch.setattr(server.webbrowser, "open", lambda address: opened.set())
+    server.serve("fig-6.2", 0, True, ready)
+    assert page.start == "fig-6.2"
+    assert not settings.telemetry.mixpanel_enable
+    with (
+        socket.create_server(("127.0.0.1", 0)) as taken,
+        pytest.raises(InputError, match="must be a free port"),
+    ):
+        server.serve("fig-6.2", taken.getsockname()[1], False, ready)
+
+
+def test_a_page_that_is_closed_ends_its_thread_and_frees_its_game(show: Callable[[str], Shown]) -> None:
     before = set(threading.enumerate())
     shown = show("fig-6.1c")
     (thread,) = set(threading.enumerate()) - before

@@ -176,10 +176,14 @@ def test_what_is_learned_has_a_chart_with_a_line_for_each_pair_of_swarms() -> No
 def test_once_the_game_has_begun_only_what_is_learned_is_shown_from_before_it() -> None:
     session = Session("fig-6.4b")
     session.change(session.form._replace(n=6, learning=20.0))
-    first = {name: chart["series"][0]["data"][0][0] for name, chart in curves_of(session.player.history).items()}
-    assert set(first.values()) == {-20.0}
+
+    def first_times() -> dict[str, float]:
+        charts = curves_of(session.player.history)
+        return {name: chart["series"][0]["data"][0][0] for name, chart in charts.items()}
+
+    assert set(first_times().values()) == {-20.0}
     session.player.seek(30.0)
-    first = {name: chart["series"][0]["data"][0][0] for name, chart in curves_of(session.player.history).items()}
+    first = first_times()
     assert first.pop("Share of learners whose best action is to fight") == -20.0
     assert set(first.values()) == {0.0}
 
