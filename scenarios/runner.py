@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from queue import SimpleQueue
 from typing import Any, Final
 
-from scenarios.runs import Run, code_version
+from scenarios.runs import Run, code_version, require_unchanged
 
 RECORDS: Final = ("conflicts", "robots", "trajectory")
 """Tables that a game can record, besides its results."""
@@ -97,6 +97,7 @@ def play(run: Run, record: str = "") -> Outcome:
 
     model = None
     try:
+        require_unchanged(run)
         model = GameModel(run.game, seed=run.seed, record=record)
         model.play()
         return Outcome(model.results(), policy_rows(model), model.tables())

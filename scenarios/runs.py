@@ -8,7 +8,8 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-from agents.calls import parse_call
+from agents.errors import InputError
+from agents.own import files
 from agents.policies import parts
 from model.game import Game
 from scenarios.cost import cpu_seconds
@@ -71,9 +72,9 @@ def code_version() -> str:
 def digest(game: Game, seed: int) -> str:
     """Return the name of what is simulated: 16 hexadecimal digits of a SHA-256.
 
-    It covers the game, the learned policies that it loads, the seed and the version of the package, so
-    two runs of one name have the same results. 64 bits keep a study of a million runs clear of
-    collisions (odds of 3 in 10⁸).
+    It covers the game, the learned policies and the users' code that it loads, the seed and the version of
+    the package, so two runs of one name have the same results. 64 bits keep a study of a million runs clear
+    of collisions (odds of 3 in 10⁸).
     """
     return digests(game, (seed,))[0]
 
@@ -120,9 +121,21 @@ def _contents(game: Game) -> list[str]:
 
 
 def _loaded(game: Game) -> list[Path]:
-    """Return the files whose learned policies play in a game."""
-    calls = [parse_call("policy", text) for swarm in game.swarms for text in parts(swarm.policy)]
-    return [Path(call.arguments["file"]) for call in calls if call.name == "learned"]
+    """Return the files of learned policies and of users' code that play in a game."""
+    return [file for swarm in game.swarms for text in parts(swarm.policy) for file in files(text)]
+
+
+def require_unchanged(run: Run) -> None:
+    """Make sure that a run still is what its name says.
+
+    Raises
+    ------
+    InputError
+        If a file that it is made of was changed since it was named.
+    """
+    if (loaded := _loaded(run.game)) and digest(run.game, run.seed) != run.digest:
+        names = ", ".join(dict.fromkeys(map(str, loaded)))
+        raise InputError("policy", names, "must not change while its games are played")
 
 
 def expand(scenarios: Iterable[Scenario], first_seed: int = 0) -> list[Run]:

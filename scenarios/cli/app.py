@@ -16,6 +16,7 @@ from scenarios.cli.catalogue import list_scenarios, show
 from scenarios.cli.conflicts import conflicts
 from scenarios.cli.explore import explore
 from scenarios.cli.film import film
+from scenarios.cli.report import report
 from scenarios.cli.run import run
 from scenarios.cli.status import replay, status
 from scenarios.runner import RunError
@@ -100,3 +101,4 @@ app.command(epilog="Example: kswarms calibrate --free friction,gamma --densities
 app.command(epilog="Example: kswarms explore fig-6.4b")(explore)
 app.command(epilog="Example: kswarms film fig-6.1c --n 50 --to 120 --out fight.gif")(film)
 app.command(epilog="Example: kswarms conflicts fig-6.4b --n 6 --robot 3 --from 0")(conflicts)
+app.command(epilog="Example: kswarms report results --out report.html")(report)

@@ -213,3 +213,21 @@ def test_a_text_that_cannot_be_read_does_not_stop_the_other_controls(session: Se
     session.change(session.form._replace(parameters="fited"))
     session.change_parameter("friction", 0.2)
     assert session.error.startswith("parameters='fited': must begin with one of")
+
+
+def test_a_policy_of_a_file_of_ones_own_plays(session: Session, tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text(
+        "class Coward:\n"
+        "    def __init__(self, setting):\n"
+        "        self.flight = setting.actions[0]\n"
+        "    def choose(self, opponent):\n"
+        "        return self.flight\n"
+    )
+    session.change_swarm(1, policy=f"{file}:Coward")
+    assert session.error == ""
+    session.player.seek(60.0)
+    assert {account.action for account in session.player.conflicts} == {"flight"}
+    file.write_text("class Coward:\n    pass\n")
+    session.change_swarm(1, policy=f"{file}:Cowerd")
+    assert "has no class Cowerd" in session.error
