@@ -10,14 +10,17 @@ DEMO := results/demo
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:  # two installs into one environment would collide
-.PHONY: help demo test lint types docs bench full clean
+.PHONY: help demo explore test lint types docs bench full clean
 
 help:  ## show this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-6s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-7s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 demo: $(RUN)  ## let two swarms compete, in three pairs of policies at ten densities, and draw the scores
 	$(BIN)/kswarms run fig-6.1a fig-6.1b fig-6.1c --seeds 10 --out $(DEMO)
 	@echo "before: source $(BIN)/activate  (so that the shell finds kswarms)"
+
+explore: $(TEST)  ## open the page in which games are watched
+	$(BIN)/kswarms explore
 
 test: lint types docs  ## lint, types, documentation, and every test with its coverage
 	$(BIN)/python -m pytest --cov --cov-report=term-missing:skip-covered

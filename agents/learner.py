@@ -30,6 +30,8 @@ class Learner:
 
     Attributes
     ----------
+    rule : Rule
+        How an arm is chosen while it learns.
     bandits : dict of int to Bandit
         What it knows about each swarm (counted from 0) that it learns about.
     learning : bool
@@ -64,8 +66,8 @@ class Learner:
         for opponent in sorted(self._reward.opponents()):
             if not 1 <= opponent <= setting.swarms:
                 raise InputError("reward", reward, f"names swarm {opponent}, the game has {setting.swarms}")
-        self._rule = make_rule(rule, len(self.actions))
-        self._factor = self._rule.factor
+        self.rule = make_rule(rule, len(self.actions))
+        self._factor = self.rule.factor
         self.bandits = {
             swarm: Bandit(len(self.actions))
             for swarm in range(setting.swarms)
@@ -86,7 +88,7 @@ class Learner:
             return self._otherwise
         if not self.learning:
             return self.learned(opponent)
-        self._arm = self._rule.choose(bandit, self._draws(Purpose.EXPLORE))
+        self._arm = self.rule.choose(bandit, self._draws(Purpose.EXPLORE))
         bandit.choices += 1
         return self.actions[self._arm]
 
@@ -140,4 +142,4 @@ class Learner:
         ]
 
     def __repr__(self) -> str:
-        return f"Learner(swarm={self.swarm}, reward={self._reward!r}, rule={self._rule!r}, {self.bandits})"
+        return f"Learner(swarm={self.swarm}, reward={self._reward!r}, rule={self.rule!r}, {self.bandits})"

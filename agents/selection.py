@@ -62,14 +62,17 @@ class UCB(Rule):
 
     gamma: float = Field(0.155, ge=0)
 
-    def prefer(self, bandit: Bandit, draws: Generator) -> int:
-        """Return the arm of the greatest bound, ties broken at random."""
+    def bounds(self, bandit: Bandit) -> list[float]:
+        """Return Q(a) + sqrt(γ ln N / N(a)) of each arm; all must have been tried."""
         scale, sqrt = self.gamma * math.log(sum(bandit.count)), math.sqrt
-        bounds = [
+        return [
             reward / time + sqrt(scale / count)
             for reward, time, count in zip(bandit.reward, bandit.time, bandit.count)  # noqa: B905  # one bandit's
         ]
-        return _greatest(bounds, draws)
+
+    def prefer(self, bandit: Bandit, draws: Generator) -> int:
+        """Return the arm of the greatest bound, ties broken at random."""
+        return _greatest(self.bounds(bandit), draws)
 
 
 class DiscountedUCB(UCB):

@@ -13,6 +13,9 @@ import typer
 from agents.errors import InputError
 from scenarios.cli.calibrate import calibrate
 from scenarios.cli.catalogue import list_scenarios, show
+from scenarios.cli.conflicts import conflicts
+from scenarios.cli.explore import explore
+from scenarios.cli.film import film
 from scenarios.cli.report import report
 from scenarios.cli.run import run
 from scenarios.cli.status import replay, status
@@ -95,4 +98,7 @@ app.command(epilog="Example: kswarms replay results 0c2b1f7a9d3e4f56")(replay)
 app.command(epilog="Example: kswarms calibrate --free friction,gamma --densities 16,30,50 --seeds 2")(
     calibrate
 )
+app.command(epilog="Example: kswarms explore fig-6.4b")(explore)
+app.command(epilog="Example: kswarms film fig-6.1c --n 50 --to 120 --out fight.gif")(film)
+app.command(epilog="Example: kswarms conflicts fig-6.4b --n 6 --robot 3 --from 0")(conflicts)
 app.command(epilog="Example: kswarms report results --out report.html")(report)

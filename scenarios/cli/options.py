@@ -1,11 +1,19 @@
 """What several commands ask for."""
 
 import os
-from typing import Annotated
+from pathlib import Path
+from typing import Annotated, Final
 
 import typer
 
 from agents.errors import InputError
+from scenarios.choice import chosen
+from scenarios.runs import Run, digest
+
+FIRST_SCENARIO: Final = "fig-6.1c"
+"""What is watched if nothing is asked for …"""
+USUAL_N: Final = 20
+"""… and with how many robots, or nearly."""
 
 Jobs = Annotated[int | None, typer.Option(help="Processes that play. [default: one for each CPU]")]
 
@@ -23,3 +31,59 @@ def processes(jobs: int | None) -> int:
     if jobs < 1:
         raise InputError("jobs", jobs, "must be at least 1")
     return jobs
+
+
+Watched = Annotated[
+    str | None, typer.Argument(metavar="[ID|DIR]", help="A scenario; with --run, a directory of results.")
+]
+RunDigest = Annotated[
+    str, typer.Option(metavar="DIGEST", help="A run of DIR, played again: the column `run` of its tables.")
+]
+
+
+def asked(what: str | None, run: str) -> str | Run:
+    """Return what is to be watched: a scenario as `scenarios.choice.chosen` takes it, or a run.
+
+    Raises
+    ------
+    InputError
+        If a run is asked for that no directory has.
+    """
+    if not run:
+        return what or FIRST_SCENARIO
+    if what is None:
+        raise InputError("run", run, "needs the directory of results that has it")
+    from scenarios.ledger import find_run
+
+    return find_run(Path(what), run)
+
+
+ConditionName = Annotated[
+    str | None, typer.Option("--condition", help="Curve of the scenario. [default: its first]")
+]
+Robots = Annotated[int | None, typer.Option("--n", help="Robots in all. [default: near 20]")]
+Seed = Annotated[int | None, typer.Option("--seed", help="Seed of the game. [default: 0]")]
+
+
+def one_run(what: str | None, run: str, condition: str | None, n: int | None, seed: int | None) -> Run:
+    """Return the run that is asked for: one of a directory by its digest, or one of a scenario.
+
+    Raises
+    ------
+    InputError
+        If there is no such run, or a run of a directory is asked to be another.
+    """
+    start = asked(what, run)
+    if isinstance(start, Run):
+        for field, value in (("condition", condition), ("n", n), ("seed", seed)):
+            if value is not None:
+                raise InputError(field, value, "must not be given with a run, which has its own")
+        return start
+    found = chosen([start])[0]
+    name = found.conditions[0].name if condition is None else condition
+    if n is None:
+        n = min(found.densities, key=lambda density: abs(density - USUAL_N))
+    if seed is not None and seed < 0:
+        raise InputError("seed", seed, "must be at least 0")
+    game = found.game(name, n)
+    return Run(digest(game, seed or 0), game, seed or 0, ((found.id, name),))

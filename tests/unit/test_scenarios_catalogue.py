@@ -206,7 +206,7 @@ def test_learners_have_the_opponents_reward_and_rule_of_the_source(
     expected = LEARNED.get((name, condition), Learned())
     assert isinstance(built, Learner)
     assert [opponent + 1 for opponent in built.bandits] == list(expected.about)
-    assert built._rule == expected.rule
+    assert built.rule == expected.rule
     assert type(built._reward) is type(expected.reward)
     for opponent in expected.about:
         for t_a, t_p in ((1.0, 0.0), (0.0, 1.0)):

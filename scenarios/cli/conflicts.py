@@ -1,0 +1,39 @@
+"""``conflicts``: a game told conflict by conflict."""
+
+from typing import Annotated
+
+import typer
+
+from agents.errors import InputError
+from scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Watched, one_run
+
+
+def conflicts(
+    what: Watched = None,
+    run: RunDigest = "",
+    condition: ConditionName = None,
+    n: Robots = None,
+    seed: Seed = None,
+    robot: Annotated[int | None, typer.Option(help="Those of one robot, from 0. [default: of all]")] = None,
+    begin: Annotated[
+        float | None,
+        typer.Option("--from", help="First instant (s of the measured game). [default: learning too]"),
+    ] = None,
+    end: Annotated[float | None, typer.Option("--to", help="Last instant (s).")] = None,
+) -> None:
+    """Play a game again and tell its conflicts: who, where, what was known, chosen and earned."""
+    found = one_run(what, run, condition, n, seed)
+    if robot is not None and not 0 <= robot < found.n:
+        raise InputError("robot", robot, f"must be in 0 to {found.n - 1}")
+    from scenarios.replay import TOLD, conflicts_of, told
+
+    rows = [
+        told(account, found.game.learning)
+        for account in conflicts_of(found)
+        if (robot is None or account.robot == robot)
+        and (begin is None or account.start - found.game.learning >= begin)
+        and (end is None or account.start - found.game.learning <= end)
+    ]
+    widths = [max(map(len, column)) for column in zip(TOLD, *rows, strict=True)]
+    for row in (TOLD, *rows):
+        typer.echo("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())

@@ -1,0 +1,115 @@
+"""``film``: a game, or a stretch of it, as a film or a contact sheet."""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from agents.errors import InputError
+from scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Watched, one_run
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+    from analysis.arena import ArenaPainter
+    from scenarios.explore.player import Picture, Player
+
+
+def film(
+    what: Watched = None,
+    run: RunDigest = "",
+    condition: ConditionName = None,
+    n: Robots = None,
+    seed: Seed = None,
+    begin: Annotated[
+        float,
+        typer.Option("--from", help="First instant: seconds of the measured game, negative in the learning."),
+    ] = 0.0,
+    end: Annotated[
+        float | None, typer.Option("--to", help="Last instant (s). [default: the end of the game]")
+    ] = None,
+    speed: Annotated[float, typer.Option(help="Seconds of the game in a second of the film.")] = 10.0,
+    fps: Annotated[int, typer.Option(help="Pictures a second.")] = 20,
+    size: Annotated[int, typer.Option(help="Width of a picture (pixels).")] = 720,
+    sheet: Annotated[
+        int | None, typer.Option(metavar="K", help="Write a contact sheet of K instants instead, a PNG.")
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="An .mp4 or .gif, with --sheet a .png. [default: by the game]"),
+    ] = None,
+) -> None:
+    """Film a game of a scenario, or a run of a results directory, from above."""
+    found = one_run(what, run, condition, n, seed)
+    game = found.game
+    end = game.duration if end is None else end
+    first = 0.0 - game.learning
+    _check("from", begin, first <= begin < game.duration, f"must be at least {first}, below {game.duration}")
+    _check(
+        "to", end, begin < end <= game.duration, f"must be greater than {begin}, and at most {game.duration}"
+    )
+    _check("speed", speed, 0 < speed < math.inf, "must be greater than 0")
+    _check("fps", fps, 1 <= fps <= 60, "must be in 1 to 60")
+    _check("size", size, 64 <= size <= 4096, "must be in 64 to 4096")
+    _check("sheet", sheet, sheet is None or 1 <= sheet <= 100, "must be in 1 to 100")
+    scenario, curve = found.labels[0]
+    name = "-".join(part for part in (scenario, curve, f"n{found.n}", f"seed{found.seed}") if part)
+    out = out or Path(f"{name}{'.mp4' if sheet is None else '.png'}")
+
+    from analysis.film import check_film, write_film, write_sheet
+    from scenarios.explore.player import Player
+
+    if sheet is None:
+        check_film(out)
+        step = speed / fps
+        instants = [begin + k * step for k in range(int((end - begin) / step + 1e-9) + 1)]
+    else:
+        _check("out", str(out), out.suffix == ".png", "must end with .png for a contact sheet")
+        instants = [begin + (end - begin) * (k / (sheet - 1) if sheet > 1 else 1.0) for k in range(sheet)]
+    if not out.parent.is_dir():
+        raise InputError("out", str(out), "must be in a directory that is there")
+    player = Player(game, found.seed)
+    try:
+        pictures = _pictures(player, instants, size)
+        if sheet is None:
+            write_film(out, pictures, fps)
+        else:
+            write_sheet(out, list(pictures))
+    finally:
+        player.close()
+    typer.echo(f"{'film' if sheet is None else 'sheet'}: {out}")
+
+
+def _check(field: str, value: object, allowed: bool, rule: str) -> None:
+    if not allowed:
+        raise InputError(field, value, rule)
+
+
+def _pictures(player: "Player", instants: list[float], size: int) -> Iterator["Image"]:
+    """Play to each instant and paint it; the end of the game is the last, if it comes before."""
+    from rich.console import Console
+    from rich.progress import track
+
+    from analysis.arena import ArenaPainter, Ground
+
+    arena = player.model.arena
+    ground = Ground(
+        *(arena.half, arena.stations, arena.bases, arena.station_radius, arena.base_radius),
+        player.game.body_preset.radius,
+    )
+    painter = ArenaPainter(ground, size)
+    if instants[0] > player.time:
+        player.seek(instants[0])
+    for instant in track(instants, "filming", console=Console(stderr=True), transient=True):
+        player.seek(instant)
+        yield _paint(painter, player.picture())
+        if player.ended:
+            break
+
+
+def _paint(painter: "ArenaPainter", picture: "Picture") -> "Image":
+    time, positions, heading, swarm, in_action, carrying, pucks = picture
+    title = f"t = {time:.1f} s" if time >= 0 else f"learning, {-time:.1f} s to the game"
+    return painter.paint(title, pucks, positions, heading, swarm, in_action, carrying)

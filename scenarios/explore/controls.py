@@ -1,0 +1,214 @@
+"""The controls at the side of the page: what is played."""
+
+from collections.abc import Callable
+from typing import Any, Final
+
+import solara
+
+from agents.body import BODIES
+from agents.errors import InputError
+from agents.policies import POLICIES
+from agents.rewards import REWARDS
+from agents.selection import RULES
+from model.arena import LAYOUTS
+from model.parameters import Parameters, parse_parameters
+from scenarios.catalogue import CATALOGUE
+from scenarios.explore.form import learning_of
+from scenarios.explore.session import Session
+from scenarios.explore.views import colour_of
+
+Act = Callable[[Callable[[], None]], None]
+
+MOST_ROBOTS: Final = 100
+_SLIDERS: Final = {
+    "friction": ("Friction μ", 0.0, 1.0, 0.02),
+    "conflict_distance": ("Conflict distance (m)", 0.02, 0.4, 0.01),
+    "flight_duration": ("Flight (s)", 0.1, 5.0, 0.1),
+    "fight_duration": ("Fight (s)", 0.1, 5.0, 0.1),
+    "base_range": ("Base seen from (m)", 0.1, 2.0, 0.02),
+    "leg_mean": ("Mean wander leg (s)", 0.5, 20.0, 0.5),
+    "push_share": ("Push share", 0.0, 1.0, 0.05),
+}
+"""Parameters of the world that have a slider: label, least, greatest, step."""
+_KNOWN_POLICIES: Final = [name for name in POLICIES if name != "learned"] + ["mixed"]
+
+
+@solara.component
+def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:
+    """Show all controls of a session."""
+    beat.get()
+    form = session.form
+
+    def change(**changes: Any) -> None:
+        # The form as it is then: the page may not have been drawn again since the last change.
+        act(lambda: session.change(session.form._replace(**changes)))
+
+    _scenario(session, act)
+    step = session.step_of_n()
+    solara.SliderInt(
+        f"Robots N = {form.n}",
+        form.n,
+        min=step,
+        max=max(step, MOST_ROBOTS // step * step),
+        step=step,
+        on_value=lambda n: change(n=n),
+    )
+    solara.InputInt("Seed", form.seed, on_value=lambda seed: change(seed=seed))
+    for k in range(len(form.swarms)):
+        _swarm(session, k, act)
+    with solara.Row(gap="6px"):
+        swarms = len(form.swarms)
+        solara.Button(
+            "Add a swarm",
+            small=True,
+            text=True,
+            on_click=lambda: act(lambda: session.change_swarms(len(session.form.swarms) + 1)),
+        )
+        solara.Button(
+            f"Remove S{swarms}",
+            small=True,
+            text=True,
+            disabled=swarms == 1,
+            on_click=lambda: act(lambda: session.change_swarms(len(session.form.swarms) - 1)),
+        )
+    _learning(session, act)
+    with solara.Details("World"):
+        _world(session, change, act)
+    with solara.Details("Drawing"):
+        for name, label in (
+            ("show_sectors", "Conflict sectors of all"),
+            ("show_sensors", "Sensors of the chosen"),
+        ):
+            solara.Checkbox(
+                label=label,
+                value=getattr(session, name),
+                on_value=lambda on, name=name: act(lambda: setattr(session, name, on)),
+            )
+
+
+# No components of their own: such a one is drawn anew only where its arguments are others.
+
+
+def _scenario(session: Session, act: Act) -> None:
+    solara.v.Combobox(
+        label="Scenario, or a TOML file",
+        v_model=session.source,
+        items=list(CATALOGUE),
+        on_v_model=lambda text: act(lambda: session.load(text or "")),
+        hint=session.title,
+        persistent_hint=True,
+    )
+    if len(session.curves) > 1:
+        solara.Select(
+            "Condition",
+            value=session.curve,
+            values=list(session.curves),
+            on_value=lambda name: act(lambda: session.choose_curve(name)),
+        )
+
+
+def _swarm(session: Session, k: int, act: Act) -> None:
+    swarm = session.form.swarms[k]
+
+    def change(**changes: Any) -> None:
+        act(lambda: session.change_swarm(k, **changes))
+
+    with solara.v.Html(tag="div", class_="kswarms-swarm", style_=f"border-left: 6px solid {colour_of(k)}"):
+        solara.v.Combobox(
+            label=f"S{k + 1}: policy",
+            v_model=swarm.policy,
+            items=_KNOWN_POLICIES,
+            on_v_model=lambda policy: change(policy=policy or ""),
+            class_="kswarms-policy",
+        )
+        solara.InputInt("Share of the robots", swarm.share, on_value=lambda share: change(share=share))
+        solara.SliderFloat(
+            f"Drive in P {swarm.drive:g}",
+            swarm.drive,
+            min=0.05,
+            max=1.0,
+            step=0.05,
+            on_value=lambda drive: change(drive=drive),
+        )
+        solara.SliderFloat(
+            f"Drive in A {swarm.drive_action:g}",
+            swarm.drive_action,
+            min=0.05,
+            max=1.0,
+            step=0.05,
+            on_value=lambda drive: change(drive_action=drive),
+        )
+
+
+def _learning(session: Session, act: Act) -> None:
+    form = session.form
+    learning = learning_of([swarm.policy for swarm in form.swarms])
+    if learning is None:
+        return
+
+    def change(part: str, name: str = "", **arguments: float) -> None:
+        act(lambda: session.change_learning(part, name, **arguments))
+
+    with solara.Details("Learning", expand=True):
+        solara.Select(
+            "Reward",
+            value=learning.reward,
+            values=list(dict.fromkeys([*REWARDS, learning.reward])),
+            on_value=lambda name: change("reward", name),
+        )
+        if learning.delta is not None:
+            solara.SliderFloat(
+                f"Δ = {learning.delta:g}",
+                learning.delta,
+                min=0.0,
+                max=0.5,
+                step=0.005,
+                on_value=lambda delta: change("reward", delta=delta),
+            )
+        solara.Select(
+            "Selection rule",
+            value=learning.rule,
+            values=list(dict.fromkeys([*RULES, learning.rule])),
+            on_value=lambda name: change("rule", name),
+        )
+        if learning.gamma is not None:
+            solara.SliderFloat(
+                f"γ = {learning.gamma:g}",
+                learning.gamma,
+                min=0.0,
+                max=1.0,
+                step=0.005,
+                on_value=lambda gamma: change("rule", gamma=gamma),
+            )
+        solara.InputFloat(
+            "Time to learn (s)",
+            form.learning,
+            on_value=lambda seconds: act(lambda: session.change(session.form._replace(learning=seconds))),
+        )
+
+
+def _world(session: Session, change: Callable[..., None], act: Act) -> None:
+    form = session.form
+    parameters: Parameters | None
+    try:
+        parameters = parse_parameters(form.parameters)
+    except InputError:
+        parameters = None  # the message above the arena says what is wrong with them
+    if parameters is not None:
+        for name, (label, least, greatest, step) in _SLIDERS.items():
+            solara.SliderFloat(
+                f"{label} {getattr(parameters, name):.4g}",
+                getattr(parameters, name),
+                min=least,
+                max=greatest,
+                step=step,
+                on_value=lambda value, name=name: act(lambda: session.change_parameter(name, value)),
+            )
+    solara.InputText("Parameters", form.parameters, on_value=lambda text: change(parameters=text))
+    solara.Select(
+        "Layout", value=form.layout, values=list(LAYOUTS), on_value=lambda name: change(layout=name)
+    )
+    solara.Select("Body", value=form.body, values=list(BODIES), on_value=lambda name: change(body=name))
+    solara.InputFloat("Length of the game (s)", form.duration, on_value=lambda s: change(duration=s))
+    solara.InputInt("Ends with this puck (0: none)", form.puck_limit, on_value=lambda n: change(puck_limit=n))
+    solara.InputInt("Pucks at a station (0: no end)", form.supply, on_value=lambda n: change(supply=n))

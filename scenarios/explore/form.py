@@ -1,0 +1,218 @@
+"""What the controls of the page say: a game in the making, from which one that can be played is built."""
+
+from typing import Any, Final, NamedTuple, Self
+
+from agents.actions import Action
+from agents.calls import parse_call
+from agents.errors import InputError
+from agents.policies import parts
+from agents.rewards import REWARDS
+from agents.selection import RULES
+from model.game import Game
+from model.parameters import PRESETS, Parameters, parse_parameters
+from scenarios.description import Condition, SwarmRule
+
+
+class SwarmForm(NamedTuple):
+    """The controls of one swarm, as the fields of `scenarios.description.SwarmRule`."""
+
+    policy: str = "avoid"
+    share: int = 1
+    drive: float = 0.6
+    drive_action: float = 0.6
+
+
+class Form(NamedTuple):
+    """The controls of a game; what they say need not be allowed until `game` is called.
+
+    Attributes
+    ----------
+    swarms : tuple of SwarmForm
+        S1 to SK.
+    n, seed : int
+        Robots in all; seed.
+    layout, body, parameters, actions, learning, duration, multiple_of
+        As in `scenarios.description.Condition`.
+    puck_limit, supply : int
+        Likewise; 0 for no limit.
+    """
+
+    swarms: tuple[SwarmForm, ...]
+    n: int = 20
+    seed: int = 0
+    layout: str = "symmetric"
+    body: str = "krembot-sim"
+    parameters: str = "fitted"
+    actions: tuple[Action, ...] = ()
+    learning: float = 0.0
+    duration: float = 600.0
+    puck_limit: int = 0
+    supply: int = 0
+    multiple_of: int | None = None
+
+    @classmethod
+    def of_condition(cls, condition: Condition, n: int, seed: int) -> Self:
+        """Return the form of a curve of a scenario, for a number of robots and a seed."""
+        return cls(
+            swarms=tuple(SwarmForm(s.policy, s.share, s.drive, s.drive_action) for s in condition.swarms),
+            n=n,
+            seed=seed,
+            puck_limit=condition.puck_limit or 0,
+            supply=condition.supply or 0,
+            **{name: getattr(condition, name) for name in _SHARED},
+        )
+
+    @classmethod
+    def of_game(cls, game: Game, seed: int) -> Self:
+        """Return the form of a game, its sizes as shares."""
+        return cls(
+            swarms=tuple(SwarmForm(s.policy, s.size, s.drive, s.drive_action) for s in game.swarms),
+            n=game.size,
+            seed=seed,
+            layout=game.layout,
+            body=game.body,
+            parameters=text_of(game.parameters),
+            actions=game.actions,
+            learning=game.learning,
+            duration=game.duration,
+            puck_limit=game.puck_limit or 0,
+            supply=game.supply or 0,
+        )
+
+    def condition(self) -> Condition:
+        """Return the curve of a scenario that this is.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        return Condition(
+            swarms=tuple(SwarmRule(**swarm._asdict()) for swarm in self.swarms),
+            puck_limit=self.puck_limit or None,
+            supply=self.supply or None,
+            **{name: getattr(self, name) for name in _SHARED},
+        )
+
+    def game(self) -> Game:
+        """Return the game.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or self.seed < 0:
+            raise InputError("seed", self.seed, "must be a whole number ≥ 0")
+        return self.condition().game(self.n)
+
+    def with_swarm(self, k: int, **changes: Any) -> Self:
+        """Return the form with some controls of a swarm (from 0) changed."""
+        swarms = [*self.swarms]
+        swarms[k] = swarms[k]._replace(**changes)
+        return self._replace(swarms=tuple(swarms))
+
+
+_SHARED: Final = ("layout", "body", "parameters", "actions", "learning", "duration", "multiple_of")
+
+
+def text_of(parameters: Parameters) -> str:
+    """Return the shortest text from which `parse_parameters` makes these parameters again."""
+    texts = []
+    for preset, defaults in PRESETS.items():
+        given = dict(parameters)
+        changes = [f"{name}={given[name]}" for name, value in dict(defaults).items() if given[name] != value]
+        texts.append(", ".join([preset, *changes]))
+    return min(texts, key=len)
+
+
+def with_parameter(text: str, name: str, value: float) -> str:
+    """Return a text of parameters with one of them changed; not named where the preset has that value.
+
+    Raises
+    ------
+    InputError
+        If the text is of no parameters, or the value not allowed.
+    """
+    return text_of(parse_parameters(text).replace(**{name: value}))
+
+
+class Learning(NamedTuple):
+    """What the controls of learning show: of the first learner among the policies.
+
+    Attributes
+    ----------
+    reward, rule : str
+        Names.
+    delta, gamma : float, optional
+        Δ and γ; None where the reward or the rule has none, or Δ is one for each opponent.
+    """
+
+    reward: str
+    rule: str
+    delta: float | None
+    gamma: float | None
+
+
+def learning_of(policies: list[str]) -> Learning | None:
+    """Return what the first learner among some policies learns by, none if there is none that can be read."""
+    for text in (part for policy in policies for part in parts(policy)):
+        try:
+            call = parse_call("policy", text)
+            if call.name in _LEARNERS:
+                reward = parse_call("reward", call.arguments.get("reward", "wlu"))
+                rule = parse_call("rule", call.arguments.get("rule", "ucb"))
+                delta, gamma = (
+                    _number(kinds[each.name].model_fields, each.arguments, name)
+                    if each.name in kinds
+                    else None
+                    for kinds, each, name in ((REWARDS, reward, "delta"), (RULES, rule, "gamma"))
+                )
+                return Learning(reward.name, rule.name, delta, gamma)
+        except InputError:
+            continue
+    return None
+
+
+_LEARNERS: Final = ("learner", "inter-learner", "intra-learner")
+
+
+def _number(fields: Any, arguments: dict[str, Any], name: str) -> float | None:
+    value = arguments.get(name, fields[name].default) if name in fields else None
+    return float(value) if isinstance(value, int | float) else None
+
+
+def with_learning(policy: str, part: str, name: str = "", **arguments: float) -> str:
+    """Return a policy with the reward or the rule of its learners changed; other policies stay.
+
+    Parameters
+    ----------
+    policy : str
+        A policy, or several joined by ``+``.
+    part : {'reward', 'rule'}
+        What is changed.
+    name : str
+        Name of the new reward or rule, with no arguments; empty to keep it.
+    **arguments
+        Arguments that it gets besides those that it has.
+
+    Examples
+    --------
+    >>> with_learning("inter-learner(rule='greedy')", "reward", delta=0.2)
+    "inter-learner(rule='greedy', reward='wlu(delta=0.2)')"
+    """
+    changed: list[str] = []
+    for text in parts(policy):
+        call = parse_call("policy", text)
+        if call.name in _LEARNERS:
+            own = parse_call(part, call.arguments.get(part, {"reward": "wlu", "rule": "ucb"}[part]))
+            inner = _write(name, {}) if name else _write(own.name, own.arguments | arguments)
+            text = _write(call.name, call.arguments | {part: inner})
+        changed.append(text)
+    return policy if changed == parts(policy) else "+".join(changed)
+
+
+def _write(name: str, arguments: dict[str, Any]) -> str:
+    """Write a call as `agents.calls.parse_call` reads it."""
+    inside = ", ".join(f"{key}={value!r}" for key, value in arguments.items())
+    return f"{name}({inside})" if inside else name

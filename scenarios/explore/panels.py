@@ -1,0 +1,113 @@
+"""The panels beside the arena: curves, the robot chosen, conflicts."""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import solara
+
+from scenarios.explore.robot import RobotView, look_into
+from scenarios.explore.session import Session
+from scenarios.explore.views import Json, curves_of
+from scenarios.replay import TOLD, Arm, number, told
+
+Act = Callable[[Callable[[], None]], None]
+
+_CONFLICTS_SHOWN: Final = 60
+
+
+@solara.component_vue("table.vue")
+def _Table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Show a table of texts; a star before a cell makes it bold."""
+
+
+@solara.component_vue("chart.vue")
+def _Chart(option: Json) -> None:
+    """Draw a chart of ECharts."""
+
+
+@solara.component
+def Panels(session: Session, beat: solara.Reactive[int], act: Act) -> None:
+    """Show the panels, one at a time."""
+    tab = solara.use_reactive(0)
+    with solara.v.Tabs(v_model=tab.value, on_v_model=tab.set, grow=True):
+        for name in ("Curves", "Robot", "Conflicts"):
+            solara.v.Tab(children=[name])
+    if tab.value == 0:
+        _Curves(session, beat)
+    elif tab.value == 1:
+        _Robot(session, beat, act)
+    else:
+        _Conflicts(session, beat, act)
+
+
+@solara.component
+def _Curves(session: Session, beat: solara.Reactive[int]) -> None:
+    beat.get()
+    for heading, option in curves_of(session.player.history).items():
+        solara.Text(heading, classes=["kswarms-heading"])
+        _Chart(option=option)
+
+
+def _chooser(session: Session, act: Act) -> None:
+    solara.InputInt(
+        f"Robot, 0 to {session.player.game.size - 1} (or click on one)",
+        session.chosen,
+        on_value=lambda robot: act(lambda: session.choose(robot)),
+        continuous_update=True,
+    )
+
+
+@solara.component
+def _Robot(session: Session, beat: solara.Reactive[int], act: Act) -> None:
+    beat.get()
+    _chooser(session, act)
+    view = look_into(session.player.model, session.chosen)
+    _Table(header=["", ""], rows=_facts(view))
+    solara.Text("Sensors: free distance (m), active ones bold", classes=["kswarms-heading"])
+    _Table(
+        header=[f"{round(math.degrees(sensor.angle))}°" for sensor in view.sensors],
+        rows=[[f"{'*' if sensor.active else ''}{sensor.free:.2f}" for sensor in view.sensors]],
+    )
+    for opponent, arms in view.bandits.items():
+        whom = "its own swarm" if opponent == view.swarm else f"S{opponent}"
+        solara.Text(f"Bandit against {whom}", classes=["kswarms-heading"])
+        _Table(
+            header=["action", "N(a)", "Q(a) = ΣR/ΣT", "√(γ ln N/N(a))", "bound"],
+            rows=[_arm_row(arm) for arm in arms],
+        )
+    if view.bandits:
+        solara.Text(f"{view.rule}; {'learns' if view.learning else 'has learned: takes the greatest Q'}")
+    else:
+        solara.Text("It does not learn.")
+
+
+def _facts(view: RobotView) -> list[list[str]]:
+    swarms = range(1, len(view.t_a) + 1)
+    return [
+        ["robot", f"{view.robot} of S{view.swarm}, {view.policy}"],
+        ["doing", f"{view.doing}{', with a puck' if view.carrying else ''}"],
+        ["met last", view.opponent or "nobody"],
+        ["pucks", str(view.pucks)],
+        ["T(a) against", ", ".join(f"S{m}: {t:.1f} s" for m, t in zip(swarms, view.t_a, strict=True))],
+        ["T(p)", f"{view.t_p:.1f} s"],
+        ["conflicts", ", ".join(f"S{m}: {n}" for m, n in zip(swarms, view.conflicts, strict=True))],
+    ]
+
+
+def _arm_row(arm: Arm) -> list[str]:
+    return [arm.action, f"{arm.n:g}", number(arm.q), number(arm.bound - arm.q), number(arm.bound)]
+
+
+@solara.component
+def _Conflicts(session: Session, beat: solara.Reactive[int], act: Act) -> None:
+    beat.get()
+    everyone = solara.use_reactive(False)
+    _chooser(session, act)
+    solara.Checkbox(label="Those of all robots", value=everyone)
+    player = session.player
+    accounts = player.conflicts_of(None if everyone.value else session.chosen, _CONFLICTS_SHOWN)
+    if not accounts:
+        solara.Text("No conflict has ended yet.")
+        return
+    _Table(header=TOLD, rows=[told(account, player.begin) for account in accounts])

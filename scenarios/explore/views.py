@@ -1,0 +1,122 @@
+"""The game as plain data for the browser: the arena's scene and frames, the curves' options."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any, Final
+
+from analysis.arena import SWARM_COLOURS
+from scenarios.explore.player import Player, Sample
+from scenarios.explore.robot import look_into
+
+Json = dict[str, Any]
+
+
+def colour_of(swarm: int) -> str:
+    """Return the colour of a swarm, counted from 0."""
+    return SWARM_COLOURS[swarm % len(SWARM_COLOURS)]
+
+
+def scene_of(player: Player) -> Json:
+    """Return what of the picture does not change during a game; lengths in metres, angles in radians."""
+    model, game = player.model, player.game
+    arena, body, parameters = model.arena, game.body_preset, game.parameters
+    return {
+        "half": arena.half,
+        "stations": arena.stations.tolist(),
+        "bases": arena.bases.tolist(),
+        "stationRadius": arena.station_radius,
+        "baseRadius": arena.base_radius,
+        "radius": body.radius,
+        "conflictReach": body.radius + body.sensing_scale * parameters.conflict_distance,
+        "frontHalfAngle": parameters.front_half_angle,
+        "swarm": list(model.fleet.swarm),
+        "colours": [colour_of(k) for k in range(len(game.swarms))],
+    }
+
+
+def frame_of(player: Player, number: int, chosen: int, sectors: bool, sensors: bool) -> Json:
+    """Return what changes: positions to 0.1 mm, headings to 0.001 rad."""
+    picture = player.picture()
+    ring = [list(sensor) for sensor in look_into(player.model, chosen).sensors] if sensors else None
+    return {
+        "number": number,
+        "time": round(picture.time, 3),
+        "ended": player.ended,
+        "pucks": picture.pucks,
+        "supply": player.model.supply,
+        "x": picture.positions[:, 0].round(4).tolist(),
+        "y": picture.positions[:, 1].round(4).tolist(),
+        "heading": picture.heading.round(3).tolist(),
+        "action": picture.in_action.astype(int).tolist(),
+        "puck": picture.carrying.astype(int).tolist(),
+        "chosen": chosen,
+        "sectors": sectors,
+        "sensors": ring,
+    }
+
+
+_DASHES: Final = ("solid", "dashed", "dotted")
+
+
+def curves_of(history: Sequence[Sample]) -> dict[str, Json]:
+    """Return, by the heading of each chart, its option for ECharts.
+
+    What counts anew with the measured game is shown from there on once it has begun; what is learned, whole.
+    """
+    everything = history
+    if history[-1].time > 0:
+        history = [sample for sample in history if sample.time >= 0]
+    times = [sample.time for sample in history]
+
+    def lines(what: str, columns: Iterable[Sequence[float]], dash: str = "solid") -> list[Json]:
+        return [
+            _line(f"S{k + 1}{what}", k, times, values, dash)
+            for k, values in enumerate(zip(*columns, strict=True))
+        ]
+
+    charts = {
+        "Pucks": _chart(lines("", (sample.pucks for sample in history))),
+        "SUD (pucks)": _chart(lines("", (sample.sud for sample in history))),
+        "Share of time in conflict": _chart(
+            lines(" inter", (sample.inter for sample in history))
+            + lines(" intra", (sample.intra for sample in history), "dotted"),
+            most=1.0,
+        ),
+    }
+    learned = [
+        _line(
+            f"S{own} against S{other}" if own != other else f"S{own} within",
+            own - 1,
+            [sample.time for sample in everything],
+            [sample.fights[own, other] for sample in everything],
+            _DASHES[number % len(_DASHES)],
+        )
+        for number, (own, other) in enumerate(history[0].fights)
+    ]
+    if learned:
+        charts["Share of learners whose best action is to fight"] = _chart(learned, most=1.0)
+    return charts
+
+
+def _line(name: str, swarm: int, times: Sequence[float], values: Sequence[float], dash: str) -> Json:
+    return {
+        "name": name,
+        "type": "line",
+        "symbol": "none",
+        "animation": False,
+        "color": colour_of(swarm),
+        "lineStyle": {"type": dash, "width": 2},
+        "data": [[round(time, 1), round(value, 4)] for time, value in zip(times, values, strict=True)],
+    }
+
+
+def _chart(lines: list[Json], most: float | None = None) -> Json:
+    return {
+        "animation": False,
+        "grid": {"left": 48, "right": 16, "top": 34, "bottom": 36},
+        "legend": {"top": 0, "itemWidth": 28, "type": "scroll"},
+        "tooltip": {"trigger": "axis"},
+        "xAxis": {"type": "value", "name": "t (s)", "nameLocation": "middle", "nameGap": 22}
+        | {"min": "dataMin", "max": "dataMax"},
+        "yAxis": {"type": "value"} | ({"max": most, "min": 0} if most else {}),
+        "series": lines,
+    }

@@ -1,0 +1,136 @@
+"""The commands that show a game: `film`, `conflicts`, and what `explore` refuses."""
+
+import sys
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from scenarios.cli import invoke
+from scenarios.ledger import find_run
+from scenarios.replay import TOLD, conflicts_of
+
+
+@pytest.fixture(autouse=True)
+def _in_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def _recorded(scenario: str = "fig-6.1c") -> str:
+    """Play one run into ``results`` and return its digest."""
+    assert invoke(f"run {scenario} --densities 6 --seeds 1 --first-seed 3 --jobs 1 --no-figures".split()) == 0
+    import pyarrow.parquet as pq
+
+    return str(pq.read_table("results/runs.parquet")["run"][0])
+
+
+def _film(arguments: str) -> int:
+    return invoke(["film", *arguments.split()])
+
+
+def test_a_stretch_of_a_game_becomes_a_film(capsys: pytest.CaptureFixture[str]) -> None:
+    assert _film("fig-6.1c --n 6 --from 10 --to 12 --speed 2 --fps 10 --size 100 --out a.gif") == 0
+    assert capsys.readouterr().out == "film: a.gif\n"
+    with Image.open("a.gif") as gif:
+        # 2 s at twice the speed, 10 pictures a second, and the last instant.
+        assert gif.n_frames == 11  # type: ignore[attr-defined]
+        assert gif.width == 100
+
+
+def test_a_film_ends_with_its_game(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("quick.toml").write_text(
+        'id = "quick"\ntitle = "One puck"\ndensities = [6]\n'
+        '[[conditions]]\npuck_limit = 1\nduration = 3600.0\n[[conditions.swarms]]\npolicy = "avoid"\n'
+    )
+    assert _film("quick.toml --speed 50 --fps 1 --size 64 --out a.gif") == 0
+    with Image.open("a.gif") as gif:
+        assert 1 < gif.n_frames < 20  # type: ignore[attr-defined]
+
+
+def test_a_sheet_has_its_instants_evenly_and_a_name_of_its_own(capsys: pytest.CaptureFixture[str]) -> None:
+    assert (
+        _film("fig-7.4 --condition delta=0.1 --n 6 --seed 4 --from -2900 --to -2800 --sheet 3 --size 100")
+        == 0
+    )
+    assert capsys.readouterr().out == "sheet: fig-7.4-delta=0.1-n6-seed4.png\n"
+    assert [path.name for path in Path().iterdir()] == ["fig-7.4-delta=0.1-n6-seed4.png"]
+    assert _film("fig-6.1c --n 6 --to 5 --sheet 1 --size 100 --out one.png") == 0
+    with Image.open("one.png") as sheet:
+        assert sheet.width == 100
+
+
+def test_a_recorded_run_is_filmed_and_told_again(capsys: pytest.CaptureFixture[str]) -> None:
+    name = _recorded()
+    capsys.readouterr()
+    assert _film(f"--run {name} results --to 1 --size 64 --out a.gif") == 0
+    assert invoke(["conflicts", "--run", name, "results", "--robot", "2", "--to", "300"]) == 0
+    header, *lines = capsys.readouterr().out.splitlines()[1:]
+    assert header.split("  ")[0] == TOLD[0]
+    run = find_run(Path("results"), name)
+    assert run.seed == 3
+    expected = [account for account in conflicts_of(run) if account.robot == 2 and account.start <= 300]
+    assert len(lines) == len(expected) > 0
+    assert [float(line.split()[0]) for line in lines] == pytest.approx([a.start for a in expected])
+
+
+def test_conflicts_may_begin_with_an_instant(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["conflicts", "fig-6.1c", "--n", "6", "--from", "300"]) == 0
+    lines = capsys.readouterr().out.splitlines()[1:]
+    assert min(float(line.split()[0]) for line in lines) >= 300
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        ("film fig-9", "id='fig-9': must be a scenario"),
+        ("film fig-6.1c --n 7", "n=7: must be a multiple of 2"),
+        ("film fig-6.1c --condition x", "condition='x': must be one of ''"),
+        ("film fig-6.1c --seed -1", "seed=-1: must be at least 0"),
+        ("film fig-6.1c --from -1", "from=-1.0: must be at least 0.0, below 600.0"),
+        ("film fig-6.1c --from 600", "from=600.0: must be at least 0.0, below 600.0"),
+        ("film fig-6.1c --from 9 --to 9", "to=9.0: must be greater than 9.0, and at most 600.0"),
+        ("film fig-6.1c --to 601", "to=601.0: must be"),
+        ("film fig-6.1c --speed 0", "speed=0.0: must be greater than 0"),
+        ("film fig-6.1c --speed nan", "speed=nan: must be greater than 0"),
+        ("film fig-6.1c --fps 61", "fps=61: must be in 1 to 60"),
+        ("film fig-6.1c --size 10", "size=10: must be in 64 to 4096"),
+        ("film fig-6.1c --sheet 0", "sheet=0: must be in 1 to 100"),
+        ("film fig-6.1c --out a.avi", "out='a.avi': must end with .mp4 or .gif"),
+        ("film fig-6.1c --sheet 2 --out a.gif", "out='a.gif': must end with .png"),
+        ("film fig-6.1c --out nowhere/a.gif", "out='nowhere/a.gif': must be in a directory that is there"),
+        ("film --run 0123", "run='0123': needs the directory of results that has it"),
+        ("film --run 0123 nowhere", "results='nowhere': must be a directory"),
+        ("film --run 0123 nowhere --n 6", "results='nowhere': must be a directory"),
+        ("conflicts fig-6.1c --n 6 --robot 6", "robot=6: must be in 0 to 5"),
+        ("explore fig-9", "id='fig-9': must be a scenario"),
+        ("explore --run 0123", "run='0123': needs the directory"),
+        ("explore --port 99999", "port=99999: must be a free port of this machine, 0 for any"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line_and_nothing_is_written(
+    arguments: str, line: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if arguments.startswith("explore"):
+        pytest.importorskip("solara", reason="needs the extra `explore`")
+    assert invoke(arguments.split()) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err.startswith(f"kswarms: {line}")
+    assert len(printed.err.splitlines()) == 1
+    assert list(Path().iterdir()) == []
+
+
+def test_a_run_has_its_own_condition_size_and_seed(capsys: pytest.CaptureFixture[str]) -> None:
+    name = _recorded()
+    assert _film(f"--run {name} results --seed 4") == 2
+    assert "seed=4: must not be given with a run" in capsys.readouterr().err
+
+
+def test_without_its_extra_explore_says_how_to_install_it(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys.modules["scenarios.cli.explore"], "find_spec", lambda _: None)
+    assert invoke(["explore"]) == 2
+    assert capsys.readouterr().err == (
+        "kswarms: explore='solara': is not installed: pip install 'kswarms[explore]'\n"
+    )
