@@ -92,9 +92,9 @@ def add_conflicts(model: "GameModel", conflicts: Iterable[Conflict]) -> None:
     """Write closed conflicts to the DataCollector's table, times in seconds, swarms counted from 1."""
     seconds = model.habits.seconds
     for c in conflicts:
+        robot, opponent = model.robots[c.robot], model.robots[c.opponent]
         row = (
-            *(model.phase, c.robot, model.robots[c.robot].swarm + 1),
-            *(c.opponent, model.robots[c.opponent].swarm + 1),
+            *(model.phase, robot.number, robot.swarm + 1, opponent.number, opponent.swarm + 1),
             *(seconds(c.start), c.x, c.y, c.action.name, seconds(c.t_a), seconds(c.t_p), c.active),
             *(c.reward, c.value),
         )
@@ -106,7 +106,7 @@ def robots_table(model: "GameModel") -> Table:
     seconds = model.habits.seconds
     times = [robot.times() for robot in model.robots]
     return {
-        "robot": [robot.index for robot in model.robots],
+        "robot": [robot.number for robot in model.robots],
         "swarm": [robot.swarm + 1 for robot in model.robots],
         "policy": [robot.policy_name for robot in model.robots],
         "pucks": [robot.pucks for robot in model.robots],
@@ -140,7 +140,7 @@ def result_rows(model: "GameModel") -> list[dict[str, Any]]:
         rows.append(
             {
                 "swarm": k + 1,
-                "size": swarm.size,
+                "size": len(model.members[k]),
                 "policy": swarm.policy,
                 "pucks": model.pucks[k],
                 "sud": swarm_utility_difference(model.pucks, k),
