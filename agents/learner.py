@@ -6,7 +6,7 @@ from agents.actions import AWAY, Action
 from agents.bandit import Bandit
 from agents.calls import build
 from agents.errors import InputError
-from agents.rewards import REWARDS
+from agents.rewards import REWARDS, Reward
 from agents.selection import RULES
 from agents.streams import Purpose
 
@@ -78,6 +78,11 @@ class Learner:
         self._draws = setting.streams.draws
         self._opponent = -1
         self._arm = -1
+
+    @property
+    def reward(self) -> Reward:
+        """What it is rewarded by."""
+        return self._reward
 
     def choose(self, opponent: int) -> Action:
         """Return the action to take against a robot of swarm `opponent` (Eq. 4.16 while learning)."""
