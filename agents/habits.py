@@ -23,6 +23,8 @@ class Habits(NamedTuple):
         Half the side of the arena.
     wall_reach, wall_half_angle : float
         As in `agents.sensors.walls_met`.
+    radius, active_range : float
+        As in `agents.sensors.read_robots`.
     escape_away : bool
         Whether a new heading only has to point away from the walls met.
     """
@@ -34,6 +36,8 @@ class Habits(NamedTuple):
     half: float
     wall_reach: float
     wall_half_angle: float
+    radius: float
+    active_range: float
     escape_away: bool
 
     def periods(self, seconds: float) -> int:
@@ -47,7 +51,11 @@ class Habits(NamedTuple):
 
 
 class Conflict(NamedTuple):
-    """One interaction of a robot, from the start of its action to the start of the next; times in periods."""
+    """One interaction of a robot, from the start of its action to the start of the next; times in periods.
+
+    `seen` has, for each swarm, the numbers of the robots that the active sensors read at the start: n_k and
+    n_m of section 1.3 are their counts.
+    """
 
     robot: int
     opponent: int
@@ -56,6 +64,7 @@ class Conflict(NamedTuple):
     y: float
     action: Action
     active: int
+    seen: tuple[tuple[int, ...], ...]
     t_a: int
     t_p: int
     reward: float

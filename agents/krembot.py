@@ -19,7 +19,7 @@ from agents.fleet import ACTION, HOME, HOME_TURN, HOMING_ERROR, IDLE, LEG, LEG_O
 from agents.habits import Conflict, Habits
 from agents.learner import Learner
 from agents.policies import Policy
-from agents.sensors import SECTOR, heads_for, walls_met, wrap
+from agents.sensors import SECTOR, heads_for, read_robots, walls_met, wrap
 from agents.streams import Purpose, Streams
 
 _STRAIGHT: Final = 1e-9
@@ -236,7 +236,7 @@ class Krembot(ContinuousSpaceAgent):
         self.conflicts[swarm] += 1
         if self._log is not None:
             x, y = self._fleet.positions[index].tolist()
-            self._open = (index, other, now, x, y, action, active)
+            self._open = (index, other, now, x, y, action, active, self._seen(other))
         if action.direction != TOWARDS:
             angle = self._vacant_direction(vacant)
         if abs(angle) > _STRAIGHT:
@@ -292,6 +292,20 @@ class Krembot(ContinuousSpaceAgent):
         self.close(now, learn=False)
         self._timer = None
         self._is_over = True
+
+    def _seen(self, met: int) -> tuple[tuple[int, ...], ...]:
+        """Return the robots that the active sensors read as it meets one of them, by swarm."""
+        habits, fleet, index = self._habits, self._fleet, self.index
+        row = fleet.robots[index]
+        read = read_robots(
+            *(index, met, row["forward_x"], row["forward_y"], fleet.positions),
+            *(habits.radius, habits.half, habits.active_range),
+        )
+        robots = sorted(int(robot) for robot in read if robot >= 0)
+        return tuple(
+            tuple(robot for robot in robots if fleet.swarm[robot] == swarm)
+            for swarm in range(len(self.conflicts))
+        )
 
     def _vacant_direction(self, vacant: int) -> float:
         """Return the angle of the most vacant sensor from the heading (rad), ties broken at random."""

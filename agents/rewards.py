@@ -9,6 +9,8 @@ from typing import Annotated, Final
 from pydantic import Discriminator, Field, Tag
 
 from agents.body import SENSORS
+from agents.theory.estimates import estimated_wlu, program_weight_of_equals, sigma
+from agents.theory.times import intra_utility
 from agents.validation import Checked
 
 
@@ -25,11 +27,6 @@ _Ratio = Annotated[float, Field(strict=True, gt=0, lt=3)]
 _Ratios = Annotated[
     Annotated[_Ratio, Tag("for-all")] | Annotated[dict[int, _Ratio], Tag("by-opponent")], Discriminator(_kind)
 ]
-
-
-def sigma(inter: bool, direction: int) -> int:
-    """Return σ = f·d: f = +1 between swarms and −1 within, d = +1 towards and −1 away (Eq. 5.5)."""
-    return direction if inter else -direction
 
 
 class Reward(Checked, ABC):
@@ -80,7 +77,8 @@ class WLU(Reward):
         """Return R (s)."""
         delta = self.delta if isinstance(self.delta, float) else self.delta.get(opponent, 0.125)
         b = self.b if isinstance(self.b, float) else self.b.get(opponent, 1.0)
-        return 0.5 * (3.0 - b) * t_p + n_active / SENSORS * sigma(inter, direction) * delta * t_a
+        program = program_weight_of_equals(b)
+        return estimated_wlu(program, t_a, t_p, n_active, sigma(inter, direction), delta)
 
 
 class IndividualUtility(Reward):
@@ -100,7 +98,7 @@ class IndividualUtility(Reward):
     def of(self, t_a: float, t_p: float, n_active: int, direction: int, inter: bool, opponent: int) -> float:
         """Return r (s)."""
         weight = 0.5 if self.half else n_active / SENSORS
-        return weight * (t_p - self.delta * t_a)
+        return intra_utility(weight, t_a, t_p, self.delta, 1.0)
 
 
 class SingleSwarmWLU(Reward):
@@ -116,7 +114,7 @@ class SingleSwarmWLU(Reward):
 
     def of(self, t_a: float, t_p: float, n_active: int, direction: int, inter: bool, opponent: int) -> float:
         """Return R (s)."""
-        return n_active / SENSORS * (t_p - self.kappa * t_a)
+        return intra_utility(n_active / SENSORS, t_a, t_p, self.kappa, 1.0)
 
 
 REWARDS: Final[dict[str, type[Reward]]] = {

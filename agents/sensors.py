@@ -92,6 +92,14 @@ def _wall_direction(wall: int) -> float:
 
 
 @compiled
+def sensor_towards(dx: float, dy: float, forward_x: float, forward_y: float) -> int:
+    """Return the sensor in whose sector (dx, dy) lies, for a robot of heading (forward_x, forward_y)."""
+    ahead = dx * forward_x + dy * forward_y
+    aside = dy * forward_x - dx * forward_y
+    return int(np.floor(math.atan2(aside, ahead) / SECTOR + 0.5)) % SENSORS
+
+
+@compiled
 def sense(
     robot: int,
     forward_x: float,
@@ -145,7 +153,64 @@ def sense(
         squared = dx * dx + dy * dy
         if other == robot or squared > reach * reach:
             continue
-        ahead = dx * forward_x + dy * forward_y
-        aside = dy * forward_x - dx * forward_y
-        sensor = int(np.floor(math.atan2(aside, ahead) / SECTOR + 0.5)) % SENSORS
+        sensor = sensor_towards(dx, dy, forward_x, forward_y)
         free[sensor] = min(free[sensor], math.sqrt(squared) - 2.0 * radius)
+
+
+@compiled
+def read_robots(
+    robot: int,
+    met: int,
+    forward_x: float,
+    forward_y: float,
+    positions: Floats,
+    radius: float,
+    half: float,
+    active_range: float,
+) -> Integers:
+    """Tell which robot each of the eight sensors reads at the start of a conflict.
+
+    An active sensor reads the nearest thing in its sector, as in `sense`: one robot, or a wall. The robot
+    met is what the sensor towards it reads in any case: it is the one that was noticed.
+
+    Parameters
+    ----------
+    robot, met : int
+        The robot that senses, and the one that it meets.
+    forward_x, forward_y : float
+        Unit vector of its heading.
+    positions : ndarray of float64, shape (n, 2)
+        Of all robots.
+    radius : float
+        Radius of every body.
+    half : float
+        Half the side of the arena.
+    active_range : float
+        A sensor is active if what is nearest in its sector is not farther, from the own surface.
+
+    Returns
+    -------
+    ndarray of int64, shape (8,)
+        Robots, −1 where a sensor reads none; the sensor ahead first, then counter-clockwise.
+    """
+    x = positions[robot, 0]
+    y = positions[robot, 1]
+    read = np.full(SENSORS, -1)
+    nearest = np.empty(SENSORS)
+    for sensor in range(SENSORS):
+        dx = forward_x * _COSINES[sensor] - forward_y * _SINES[sensor]
+        dy = forward_x * _SINES[sensor] + forward_y * _COSINES[sensor]
+        nearest[sensor] = min(active_range, wall_ray(x, y, dx, dy, half) - radius)
+    for other in range(len(positions)):
+        if other == robot:
+            continue
+        dx = positions[other, 0] - x
+        dy = positions[other, 1] - y
+        sensor = sensor_towards(dx, dy, forward_x, forward_y)
+        gap = math.sqrt(dx * dx + dy * dy) - 2.0 * radius
+        if other == met:
+            gap = -math.inf
+        if gap <= nearest[sensor]:
+            read[sensor] = other
+            nearest[sensor] = gap
+    return read

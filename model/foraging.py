@@ -338,5 +338,7 @@ def _habits(game: Game) -> Habits:
         half=game.side / 2,
         wall_reach=body.radius + body.sensing_scale * parameters.wall_distance,
         wall_half_angle=parameters.wall_half_angle,
+        radius=body.radius,
+        active_range=body.sensing_scale * parameters.active_range,
         escape_away=parameters.wall_escape == "away",
     )

@@ -1,6 +1,6 @@
 """What is kept of a game: Mesa's DataCollector, the tables of records, the row of results (section 3.5)."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -12,6 +12,7 @@ from agents.habits import Conflict
 from agents.learned import save
 from agents.learner import Learner
 from agents.policies import describe
+from agents.theory.swarms import swarm_utility_difference
 
 if TYPE_CHECKING:
     from model.foraging import GameModel
@@ -23,7 +24,7 @@ Table = dict[str, list[Any]]
 
 _CONFLICT_COLUMNS: Final = (
     *("phase", "robot", "swarm", "opponent", "opponent_swarm", "start", "x", "y"),
-    *("action", "t_a", "t_p", "active", "reward", "q"),
+    *("action", "t_a", "t_p", "active", "seen", "reward", "q"),
 )
 
 
@@ -40,11 +41,6 @@ def parse_record(text: str) -> frozenset[str]:
         if name not in RECORDS:
             raise InputError("record", name, f"must be one of {', '.join(RECORDS)}")
     return names
-
-
-def swarm_utility_difference(pucks: Sequence[int], swarm: int) -> int:
-    """Return SUD of a swarm on pucks: its own less all others' (Eq. 3.7)."""
-    return 2 * pucks[swarm] - sum(pucks)
 
 
 def make_collector(swarms: int, record: frozenset[str]) -> DataCollector:
@@ -96,7 +92,7 @@ def add_conflicts(model: "GameModel", conflicts: Iterable[Conflict]) -> None:
         row = (
             *(model.phase, robot.number, robot.swarm + 1, opponent.number, opponent.swarm + 1),
             *(seconds(c.start), c.x, c.y, c.action.name, seconds(c.t_a), seconds(c.t_p), c.active),
-            *(c.reward, c.value),
+            *(c.seen, c.reward, c.value),
         )
         model.datacollector.add_table_row("conflicts", dict(zip(_CONFLICT_COLUMNS, row, strict=True)))
 

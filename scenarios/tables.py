@@ -70,6 +70,7 @@ CONFLICTS: Final = pa.schema(
         "t_a": _REAL,
         "t_p": _REAL,
         "active": _WHOLE,
+        "seen": pa.list_(pa.list_(_WHOLE)),
         "reward": _REAL,
         "q": _REAL,
     }

@@ -129,6 +129,8 @@ def test_durations_are_whole_periods_rounded_up(seconds: float, period: float, p
         half=1.0,
         wall_reach=0.1,
         wall_half_angle=0.0,
+        radius=0.085,
+        active_range=0.3,
         escape_away=False,
     )
     assert habits.periods(seconds) == periods

@@ -6,7 +6,8 @@ from hypothesis import strategies as st
 
 from agents.actions import AWAY, TOWARDS
 from agents.errors import InputError
-from agents.rewards import WLU, IndividualUtility, Reward, SingleSwarmWLU, sigma
+from agents.rewards import WLU, IndividualUtility, Reward, SingleSwarmWLU
+from agents.theory.estimates import sigma
 
 SECONDS = st.floats(0, 600)
 ACTIVE = st.integers(0, 8)

@@ -7,10 +7,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from agents.theory.swarms import swarm_utility_difference
 from model.foraging import GameModel
 from model.game import Game, Swarm
 from model.plain import ForagingModel
-from model.recording import RECORDS, parse_record, swarm_utility_difference
+from model.recording import RECORDS, parse_record
 
 GAME = Game(
     swarms=(Swarm(policy="avoid", size=4), Swarm(policy="attack", size=5), Swarm(policy="mixed", size=3)),
