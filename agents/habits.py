@@ -53,8 +53,8 @@ class Habits(NamedTuple):
 class Conflict(NamedTuple):
     """One interaction of a robot, from the start of its action to the start of the next; times in periods.
 
-    `seen` has, for each swarm, the numbers of the robots that the active sensors read at the start: n_k and
-    n_m of section 1.3 are their counts.
+    Robots are rows of the fleet. `seen` has, for each swarm, those that the active sensors read at the start:
+    n_k and n_m of section 1.3 are their counts.
     """
 
     robot: int

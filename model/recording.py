@@ -89,10 +89,11 @@ def add_conflicts(model: "GameModel", conflicts: Iterable[Conflict]) -> None:
     seconds = model.habits.seconds
     for c in conflicts:
         robot, opponent = model.robots[c.robot], model.robots[c.opponent]
+        seen = tuple(tuple(model.robots[j].number for j in of_swarm) for of_swarm in c.seen)
         row = (
             *(model.phase, robot.number, robot.swarm + 1, opponent.number, opponent.swarm + 1),
             *(seconds(c.start), c.x, c.y, c.action.name, seconds(c.t_a), seconds(c.t_p), c.active),
-            *(c.seen, c.reward, c.value),
+            *(seen, c.reward, c.value),
         )
         model.datacollector.add_table_row("conflicts", dict(zip(_CONFLICT_COLUMNS, row, strict=True)))
 

@@ -6,7 +6,7 @@ difference. What is compared is the measured game, whether the robot is absent f
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -34,10 +34,10 @@ _TEXT, _WHOLE, _REAL = pa.string(), pa.int64(), pa.float64()
 
 SCHEMA: Final = pa.schema(
     {
-        **{name: _TEXT for name in ("scenario", "condition", "absent_from", "run", "run_without", "policy")},
-        **{name: _WHOLE for name in ("n", "seed", "robot", "swarm", "sud", "sud_without")},
-        **{name: _REAL for name in ("time_sud", "time_sud_without", "reward", "reward_time")},
-        **{name: _REAL for name in ("duration", "duration_without")},
+        **dict.fromkeys(("scenario", "condition", "absent_from", "run", "run_without", "policy"), _TEXT),
+        **dict.fromkeys(("n", "seed", "robot", "swarm", "sud", "sud_without"), _WHOLE),
+        **dict.fromkeys(("time_sud", "time_sud_without", "reward", "reward_time"), _REAL),
+        **dict.fromkeys(("duration", "duration_without"), _REAL),
         **{
             f"{others}_{what}": _REAL
             for others in ("mates", "opponents")
@@ -48,7 +48,8 @@ SCHEMA: Final = pa.schema(
 """Columns of ``contribution.parquet``: one row for each game and robot (docs/contribution.md)."""
 
 AbsentFrom = Literal["learning", "game"]
-Play = Callable[[Sequence[Run]], Iterable[tuple[Run, Outcome]]]
+Played = Generator[tuple[Run, Outcome], None, None]
+Play = Callable[[Sequence[Run]], Played]
 """Plays runs, with the records `RECORD`, and yields each with its outcome, in any order."""
 TimeSud = Callable[[Mapping[str, Sequence[Any]], int], Sequence[float]]
 """From the conflicts of a game, columns as in ``conflicts.parquet``, and the number of swarms: SUD of each in
@@ -140,11 +141,11 @@ def contributions(
         If a game fails.
     """
     if game.absent:
-        raise InputError("absent", game.absent, "must be empty: robots are taken from a game that has them all")
+        raise InputError("absent", game.absent, "must be empty: robots are taken from a game of all")
     games = [game, *(game.replace(absent=(robot,), absent_from=absent_from) for robot in robots)]
     runs = [Run(digest(each, seed), each, seed, (label,)) for seed in seeds for each in games]
     measured: dict[tuple[int, tuple[int, ...]], _Measured] = {}
-    with closing(_played(runs) if play is None else iter(play(runs))) as played:
+    with closing(play_all(runs, record=RECORD) if play is None else play(runs)) as played:
         for run, outcome in played:
             measured[run.seed, run.game.absent] = _measure(run, outcome, time_sud)
     return [
@@ -154,10 +155,6 @@ def contributions(
         for seed in seeds
         for robot in robots
     ]
-
-
-def _played(runs: Sequence[Run]) -> Iterable[tuple[Run, Outcome]]:
-    return play_all(runs, record=RECORD)
 
 
 @dataclass

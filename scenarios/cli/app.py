@@ -14,6 +14,7 @@ import typer
 from agents.errors import InputError
 from scenarios.cli.calibrate import calibrate
 from scenarios.cli.catalogue import list_scenarios, show
+from scenarios.cli.contribution import contribution
 from scenarios.cli.run import run
 from scenarios.runner import RunError
 from scenarios.runs import package_version
@@ -91,3 +92,4 @@ app.command(epilog="Example: kswarms run fig-6.1a fig-6.1c --densities 6,30,50 -
 app.command(epilog="Example: kswarms calibrate --free friction,gamma --densities 16,30,50 --seeds 2")(
     calibrate
 )
+app.command(epilog="Example: kswarms contribution fig-6.4b --n 16 --robots S2 --seeds 5")(contribution)

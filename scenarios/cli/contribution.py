@@ -1,6 +1,6 @@
 """``contribution``: what robots contributed to their swarm, by playing the game without them."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from contextlib import closing
 from functools import partial
 from pathlib import Path
@@ -52,6 +52,7 @@ def contribution(
             raise InputError(option, value, f"must be at least {least}")
     workers = processes(jobs)
 
+    from analysis.contribution import time_sud
     from scenarios.contribution import contributions, prepare_table, robots_of, write_table
 
     numbers = robots_of(game, robots)
@@ -63,12 +64,13 @@ def contribution(
         absent_from,
         label=(scenario.id, name),
         play=partial(_play, workers),
+        time_sud=time_sud,
     )
     typer.echo(f"table:  {write_table(out, rows)}")
     _show(out, scenario.id, scenario.title, rows[0])
 
 
-def _play(jobs: int, runs: Sequence[Run]) -> Iterator[tuple[Run, Outcome]]:
+def _play(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, Outcome], None, None]:
     from rich.console import Console
     from rich.progress import track
 
@@ -83,16 +85,17 @@ def _show(out: Path, scenario: str, title: str, question: dict[str, Any]) -> Non
     from rich.console import Console
     from rich.table import Table
 
-    from analysis import contribution as found
+    from analysis.contribution import of_question, read
+    from analysis.contribution_shown import draw, printed
 
     named = {name: question[name] for name in ("condition", "n", "absent_from")}
-    typer.echo(f"figure: {found.draw(out, title, scenario=scenario, **named)}")
-    rows = found.of_question(found.read(out), scenario=scenario, **named)
+    typer.echo(f"figure: {draw(out, title, scenario=scenario, **named)}")
+    rows = of_question(read(out), scenario=scenario, **named)
     console = Console(width=_ANY_WIDTH, highlight=False)
-    for heading, printed in found.printed(rows):
+    for heading, (header, *lines) in printed(rows):
         table = Table()
-        for name in printed[0]:
+        for name in header:
             table.add_column(name, justify="right")
-        for cells in printed[1:]:
+        for cells in lines:
             table.add_row(*cells)
         console.print(f"\n{heading}", table, sep="\n")
