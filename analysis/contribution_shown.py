@@ -42,7 +42,8 @@ def scatter(rows: pd.DataFrame, title: str = "") -> Figure:
     """
     first, seeds, measures = rows.iloc[0], rows["seed"].nunique(), measures_of(rows)
     absent = "from learning and game" if first["absent_from"] == "learning" else "from the measured game"
-    heading = [first["scenario"], first["condition"], f"N = {first['n']}", f"robots absent {absent}", title]
+    name = f"{first['scenario']}: {title}" if title else first["scenario"]
+    heading = [name, first["condition"], f"N = {first['n']}", f"robots absent {absent}"]
     robots, correlations = means(rows), rank_correlations(rows)
     with (
         sns.axes_style("whitegrid", rc={"grid.color": "0.9"}),
@@ -69,7 +70,7 @@ def scatter(rows: pd.DataFrame, title: str = "") -> Figure:
 
 def _draw_swarm(axes: Axes, games: pd.DataFrame, robots: pd.DataFrame, measure: str, form: Form) -> None:
     if games["seed"].nunique() > 1:
-        axes.scatter(games["reward"], games[measure], s=7, color=form.colour, alpha=0.15, linewidths=0)
+        axes.scatter(games["reward"], games[measure], s=7, color=form.colour, alpha=0.25, linewidths=0)
     axes.errorbar(
         robots["reward"],
         robots[measure],
