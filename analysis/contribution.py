@@ -23,7 +23,7 @@ from analysis.utilities import COLUMNS, robot_utilities, swarm_utilities
 
 Floats = NDArray[np.float64]
 Statistic = Callable[[Floats], Floats]
-"""Maps tables of shape (…, seeds, columns) to numbers of shape (…)."""
+"""Maps what belongs to the seeds, drawn again and again, to one number for each time."""
 
 FILE: Final = "contribution.parquet"
 CONFIDENCE: Final = 0.95
@@ -174,23 +174,21 @@ def rank_correlations(rows: pd.DataFrame) -> pd.DataFrame:
     table = []
     for swarm, of_swarm in rows.groupby("swarm"):
         reward = _by_seed(of_swarm, "reward")
-        robots = reward.shape[1]
-        for measure in measures_of(rows) if robots >= FEWEST_ROBOTS else ():
-            both = np.hstack([reward, _by_seed(of_swarm, measure)])
-
-            def of_means(tables: Floats, robots: int = robots) -> Floats:
-                mean = tables.mean(axis=-2)
-                return rank_correlation(mean[..., :robots], mean[..., robots:])
-
-            low, high = _bootstrap(both, of_means)
-            in_games = rank_correlation(both[:, :robots], both[:, robots:])
-            mean, *interval = _student(in_games[~np.isnan(in_games)])
-            mean_low, mean_high = np.clip(interval, -1.0, 1.0)
-            table.append(
-                (swarm, measure, float(of_means(both)), low, high, mean, mean_low, mean_high),
-            )
+        for measure in measures_of(rows) if reward.shape[1] >= FEWEST_ROBOTS else ():
+            contribution = _by_seed(of_swarm, measure)
+            both = np.stack([reward, contribution], axis=-1)
+            in_games = rank_correlation(reward, contribution)
+            of_games = np.clip(_student(in_games[~np.isnan(in_games)]), -1.0, 1.0)
+            of_means = (float(_of_means(both)), *_bootstrap(both, _of_means))
+            table.append((swarm, measure, *of_means, *of_games))
     columns = ("robots", "robots_low", "robots_high", "games", "games_low", "games_high")
     return pd.DataFrame(table, columns=["swarm", "measure", *columns])
+
+
+def _of_means(games: Floats) -> Floats:
+    """Return ρ of the means over the seeds of two quantities, shape (…, seeds, robots, 2)."""
+    mean = games.mean(axis=-3)
+    return rank_correlation(mean[..., 0], mean[..., 1])
 
 
 def rank_correlation(first: Floats, second: Floats) -> Floats:
@@ -274,7 +272,7 @@ def _student(values: Floats) -> tuple[float, float, float]:
 
 
 def _bootstrap(table: Floats, statistic: Statistic) -> tuple[float, float]:
-    """Return the 95 % interval of a statistic of a table of shape (seeds, columns) over its seeds."""
+    """Return the 95 % interval of a statistic of a table over the seeds, its first axis."""
     seeds = len(table)
     if seeds < 2:
         return np.nan, np.nan
