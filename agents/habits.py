@@ -53,8 +53,8 @@ class Habits(NamedTuple):
 class Conflict(NamedTuple):
     """One interaction of a robot, from the start of its action to the start of the next; times in periods.
 
-    Robots are rows of the fleet. `seen` has, for each swarm, those that the active sensors read at the start:
-    n_k and n_m of section 1.3 are their counts.
+    Robots are rows of the fleet. `seen` is what `agents.sensors.read_robots` returns: how many of each swarm
+    it has is n_k and n_m of section 1.3.
     """
 
     robot: int
@@ -64,7 +64,7 @@ class Conflict(NamedTuple):
     y: float
     action: Action
     active: int
-    seen: tuple[tuple[int, ...], ...]
+    seen: tuple[int, ...]
     t_a: int
     t_p: int
     reward: float

@@ -236,7 +236,7 @@ class Krembot(ContinuousSpaceAgent):
         self.conflicts[swarm] += 1
         if self._log is not None:
             x, y = self._fleet.positions[index].tolist()
-            self._open = (index, other, now, x, y, action, active, self._seen(other))
+            self._open = (index, other, now, x, y, action, active, self._read_robots(other))
         if action.direction != TOWARDS:
             angle = self._vacant_direction(vacant)
         if abs(angle) > _STRAIGHT:
@@ -293,18 +293,12 @@ class Krembot(ContinuousSpaceAgent):
         self._timer = None
         self._is_over = True
 
-    def _seen(self, met: int) -> tuple[tuple[int, ...], ...]:
-        """Return the robots that the active sensors read as it meets one of them, by swarm."""
-        habits, fleet, index = self._habits, self._fleet, self.index
-        row = fleet.robots[index]
-        read = read_robots(
-            *(index, met, row["forward_x"], row["forward_y"], fleet.positions),
-            *(habits.radius, habits.half, habits.active_range),
-        )
-        robots = sorted(int(robot) for robot in read if robot >= 0)
+    def _read_robots(self, met: int) -> tuple[int, ...]:
+        """Return the robot that each sensor reads as it meets one of them, −1 for none."""
+        row, habits = self._fleet.robots[self.index], self._habits
+        where = row["forward_x"], row["forward_y"], self._fleet.positions
         return tuple(
-            tuple(robot for robot in robots if fleet.swarm[robot] == swarm)
-            for swarm in range(len(self.conflicts))
+            read_robots(self.index, met, *where, habits.radius, habits.half, habits.active_range).tolist()
         )
 
     def _vacant_direction(self, vacant: int) -> float:

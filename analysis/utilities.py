@@ -28,6 +28,7 @@ action that was under way when the measured game began is in no conflict of it, 
 
 import math
 from collections.abc import Mapping, Sequence
+from numbers import Real
 from typing import Any, Final
 
 import numpy as np
@@ -198,6 +199,6 @@ def _weight(name: str, given: Weights, swarm: int, opponent: int) -> float:
     if isinstance(given, Mapping):
         either: Mapping[Any, float] = given
         found = either.get((swarm, opponent), either.get(swarm))
-    if not isinstance(found, int | float) or not 0 < found < math.inf:
+    if not isinstance(found, Real) or not 0 < float(found) < math.inf:
         raise InputError(f"{name} of swarm {swarm} against {opponent}", found, "must be a number > 0")
     return float(found)

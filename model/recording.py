@@ -85,15 +85,21 @@ def _share_of_action(model: "GameModel", swarm: int) -> float:
 
 
 def add_conflicts(model: "GameModel", conflicts: Iterable[Conflict]) -> None:
-    """Write closed conflicts to the DataCollector's table, times in seconds, swarms counted from 1."""
-    seconds = model.habits.seconds
+    """Write closed conflicts to the DataCollector's table, times in seconds, swarms counted from 1.
+
+    ``seen`` has a tuple for each swarm: the numbers of its robots that the sensors read, ascending.
+    """
+    seconds, robots = model.habits.seconds, model.robots
     for c in conflicts:
-        robot, opponent = model.robots[c.robot], model.robots[c.opponent]
-        seen = tuple(tuple(model.robots[j].number for j in of_swarm) for of_swarm in c.seen)
+        robot, opponent = robots[c.robot], robots[c.opponent]
+        seen: list[list[int]] = [[] for _ in model.members]
+        for j in sorted(c.seen):
+            if j >= 0:
+                seen[robots[j].swarm].append(robots[j].number)
         row = (
             *(model.phase, robot.number, robot.swarm + 1, opponent.number, opponent.swarm + 1),
             *(seconds(c.start), c.x, c.y, c.action.name, seconds(c.t_a), seconds(c.t_p), c.active),
-            *(seen, c.reward, c.value),
+            *(tuple(map(tuple, seen)), c.reward, c.value),
         )
         model.datacollector.add_table_row("conflicts", dict(zip(_CONFLICT_COLUMNS, row, strict=True)))
 

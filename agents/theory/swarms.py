@@ -8,18 +8,19 @@ from collections.abc import Sequence
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from agents.errors import InputError
+from agents.fleet import Floats
 
-Floats = NDArray[np.float64]
 _Utility = TypeVar("_Utility", int, float)
+_Numbers = TypeVar("_Numbers", float, Floats)
 
 _TOLERANCE = 1e-9
 """Utilities that differ by less than this part of the largest of them are equal."""
 
 
-def opponents_utility(u: float) -> float:
+def opponents_utility(u: _Numbers) -> _Numbers:
     """Return u_j^k = −u_i^m of the other player of an interaction between two swarms (Eq. 3.1)."""
     return -u
 

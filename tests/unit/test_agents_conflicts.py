@@ -78,6 +78,7 @@ def test_a_conflict_is_logged_as_it_was_at_its_start(scene: Scene) -> None:
             "y": 0.1,
             "active": 4,
             "opponent": 2,
+            "seen": (-1, 2, 3, 4, 5, -1, -1, -1),
         }.items()
     )
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from agents.sensors import SECTOR, heads_for, sense, wall_ray, walls_met, wrap
+from agents.sensors import SECTOR, heads_for, read_robots, sense, wall_ray, walls_met, wrap
 
 angles = st.floats(-math.pi, math.pi)
 coordinates = st.floats(-0.99, 0.99)
@@ -166,3 +166,55 @@ def test_only_the_given_others_count() -> None:
     free = np.empty(8)
     sense(0, 1.0, 0.0, positions, np.array([1, 0, 2]), 2, RADIUS, 2.0, 9.0, free)
     assert free[0] == pytest.approx(0.3)
+
+
+def polar(distance: float, angle: float) -> tuple[float, float]:
+    return distance * math.cos(angle), distance * math.sin(angle)
+
+
+def read(
+    positions: list[tuple[float, float]], met: int, heading: float = 0.0, reach: float = 0.3
+) -> list[int]:
+    forward = math.cos(heading), math.sin(heading)
+    return read_robots(0, met, *forward, np.array(positions), RADIUS, 1.0, reach).tolist()
+
+
+def test_an_active_sensor_reads_the_nearest_robot_in_its_sector() -> None:
+    # Gaps of 0.2 m ahead and 0.25 m behind it, 0.15 m at the back, and 0.31 m at the left, beyond the range.
+    others = [polar(0.4, 0.0), polar(0.45, 0.35), polar(0.35, math.pi), polar(0.51, math.pi / 2)]
+    assert read([(0.0, 0.0), *others], met=1) == [1, -1, -1, -1, 3, -1, -1, -1]
+
+
+def test_the_robot_met_is_read_though_another_is_nearer() -> None:
+    others = [polar(0.3, 0.9), polar(0.25, 1.15)]
+    assert read([(0.0, 0.0), *others], met=1) == [-1, 1, -1, -1, -1, -1, -1, -1]
+    assert read([(0.0, 0.0), *others], met=2) == [-1, 2, -1, -1, -1, -1, -1, -1]
+
+
+def test_a_wall_hides_a_robot_behind_it_unless_it_is_met() -> None:
+    # The wall is 0.29 m off along the middle of the sensor ahead; the robot, nearly parallel to it, 0.35 m.
+    heading = math.pi / 8
+    x, y = polar(0.55, 0.09)
+    positions = [(0.0, 0.85), (x, 0.85 + y), (0.0, 0.6)]
+    assert read(positions, met=2, heading=heading, reach=0.5)[0] == -1
+    assert read(positions, met=1, heading=heading, reach=0.5)[0] == 1
+    nearer = [(0.0, 0.85), (0.85 * x, 0.85 + 0.85 * y), (0.0, 0.6)]
+    assert read(nearer, met=2, heading=heading, reach=0.5)[0] == 1
+
+
+@given(st.lists(st.tuples(coordinates, coordinates), min_size=2, max_size=8, unique=True), angles)
+def test_the_robots_read_are_those_whose_distance_a_sensor_measures(
+    positions: list[tuple[float, float]], heading: float
+) -> None:
+    forward = math.cos(heading), math.sin(heading)
+    free = np.zeros(8)
+    others = np.arange(len(positions))
+    sense(0, *forward, np.array(positions), others, len(positions), RADIUS, 1.0, 0.3, free)
+    met = min(range(1, len(positions)), key=lambda other: math.dist(positions[0], positions[other]))
+    seen = read(positions, met, heading)
+    gaps = {other: math.dist(positions[0], positions[other]) - 2 * RADIUS for other in seen if other >= 0}
+    assert met in gaps
+    for sensor, other in enumerate(seen):
+        if other >= 0 and other != met:
+            assert gaps[other] == pytest.approx(free[sensor])
+            assert gaps[other] <= 0.3

@@ -106,7 +106,7 @@ def test_the_agents_frame() -> None:
 def test_the_table_of_conflicts() -> None:
     model = played("conflicts")
     table = pd.DataFrame(model.tables()["conflicts"])
-    columns = "phase robot swarm opponent opponent_swarm start x y action t_a t_p active reward q"
+    columns = "phase robot swarm opponent opponent_swarm start x y action t_a t_p active seen reward q"
     assert list(table.columns) == columns.split()
     assert table.equals(model.datacollector.get_table_dataframe("conflicts"))
     swarm = np.array([robot.swarm + 1 for robot in model.robots])
@@ -115,6 +115,12 @@ def test_the_table_of_conflicts() -> None:
     assert (table["robot"] != table["opponent"]).all()
     assert set(table["phase"]) == {"game"}
     assert table["active"].between(0, 8).all()
+    for row in table.to_dict("records"):
+        assert [list(swarm[list(seen)]) for seen in row["seen"]] == [
+            [k + 1] * len(s) for k, s in enumerate(row["seen"])
+        ]
+        assert row["opponent"] in row["seen"][row["opponent_swarm"] - 1]
+        assert sum(map(len, row["seen"])) <= row["active"]
     assert table[["x", "y"]].abs().max().max() <= 1 - 0.085 + 1e-9
     fights = (table["swarm"] == 2) & (table["opponent_swarm"] != 2)
     assert set(table.loc[fights, "action"]) == {"fight"}
