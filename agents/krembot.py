@@ -297,9 +297,7 @@ class Krembot(ContinuousSpaceAgent):
         """Return the robot that each sensor reads as it meets one of them, −1 for none."""
         row, habits = self._fleet.robots[self.index], self._habits
         where = row["forward_x"], row["forward_y"], self._fleet.positions
-        return tuple(
-            read_robots(self.index, met, *where, habits.radius, habits.half, habits.active_range).tolist()
-        )
+        return read_robots(self.index, met, *where, habits.radius, habits.half, habits.active_range)
 
     def _vacant_direction(self, vacant: int) -> float:
         """Return the angle of the most vacant sensor from the heading (rad), ties broken at random."""
@@ -310,13 +308,18 @@ class Krembot(ContinuousSpaceAgent):
 
     def _drive_action(self, event: Timeout | None) -> None:
         if event is self._timer and self._action is not None:
-            self._drive(ACTION, self._stride_action)
+            # `_drive` and `_wait` written out: every conflict comes through here.
+            index = self.index
+            self._phase[index] = ACTION
+            self._stride[index] = self._stride_action
+            self._turn_rate[index] = 0.0
             name = self._action.name
-            self._wait(self._action_periods[name], self._action_over, name)
+            timer = self._timer = Timeout(self._env, self._action_periods[name], name)
+            timer.callbacks.append(self._action_over)
 
     def _action_over(self, event: Timeout) -> None:
         if event is self._timer:
-            now = cast(int, self._env.now)
+            now: int = self._env.now  # type: ignore[assignment]  # whole periods; `cast` would cost a call
             elapsed = self._open_t_a = now - self._since
             self.t_a[self._opponent_swarm] += elapsed
             self._since = now
@@ -341,7 +344,7 @@ class Krembot(ContinuousSpaceAgent):
     def _turn(self, phase: int, angle: float, then: Callable[[Any], None]) -> None:
         """Turn in place, in whole periods, and call `then`."""
         index = self.index
-        periods = max(1, math.ceil(abs(angle) / self._turn_step - _STRAIGHT))
+        periods = math.ceil(abs(angle) / self._turn_step - _STRAIGHT) or 1
         self._phase[index] = phase
         self._stride[index] = 0.0
         self._turn_rate[index] = angle / periods

@@ -58,10 +58,10 @@ class UCB(Rule):
 
     def prefer(self, bandit: Bandit, draws: Generator) -> int:
         """Return the arm of the greatest bound, ties broken at random."""
-        scale = self.gamma * math.log(sum(bandit.count))
+        scale, sqrt = self.gamma * math.log(sum(bandit.count)), math.sqrt
         bounds = [
-            reward / time + math.sqrt(scale / count)
-            for reward, time, count in zip(bandit.reward, bandit.time, bandit.count, strict=True)
+            reward / time + sqrt(scale / count)
+            for reward, time, count in zip(bandit.reward, bandit.time, bandit.count)  # noqa: B905  # one bandit's
         ]
         return _greatest(bounds, draws)
 

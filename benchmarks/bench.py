@@ -22,6 +22,7 @@ from model.plain import ForagingModel
 
 MOST_TIMES_BARE: Final = 5.0
 LEAST_THROUGHPUT: Final = 80_000
+LEAST_LEARNING_THROUGHPUT: Final = 60_000
 MOST_GROWTH: Final = 1.5
 MOST_MEMORY: Final = 300
 MOST_SECONDS_TO_GAME: Final = 5.0
@@ -44,7 +45,7 @@ class Work(NamedTuple):
     scheduled : int
         All events that were scheduled, those after the end of the game included.
     conflicts, pucks : int
-        Begun and deposited, by all robots.
+        Begun and deposited, by all robots, in the measured game.
     """
 
     timeouts: int
@@ -61,6 +62,7 @@ class Plan(NamedTuple):
     n: int
     duration: float = 600.0
     side: float = 2.0
+    learning: float = 0.0
 
     def model(self, seed: int) -> ForagingModel:
         """Build a game that records nothing."""
@@ -68,8 +70,8 @@ class Plan(NamedTuple):
 
     @property
     def robot_seconds(self) -> float:
-        """Robots × seconds of a game."""
-        return self.n * self.duration
+        """Robots × seconds of a game, those of learning included."""
+        return self.n * (self.learning + self.duration)
 
 
 def count_work(plan: Plan, seed: int) -> Work:
@@ -93,8 +95,9 @@ def count_work(plan: Plan, seed: int) -> Work:
     work = _done(model)._replace(timeouts=kinds[Timeout], events=kinds.total())
     played = sum(row["t_a_intra"] + row["t_a_inter"] + row["t_p"] for row in model.results())
     _forget(model)
-    if abs(played - plan.robot_seconds) > 1e-6 * plan.robot_seconds:
-        raise WorkError(f"{plan}, seed {seed}: {played} robot-seconds played, not {plan.robot_seconds}")
+    measured = plan.n * plan.duration
+    if abs(played - measured) > 1e-6 * measured:
+        raise WorkError(f"{plan}, seed {seed}: {played} robot-seconds played, not {measured}")
     # A conflict sets a timeout at once; at the end of the game each robot's last may still run.
     if work.timeouts + plan.n < work.conflicts or min(work.timeouts, work.conflicts) == 0:
         raise WorkError(f"{plan}, seed {seed}: too little happened for a game: {work}")
@@ -230,17 +233,25 @@ def main(
     """
     pairs = (("avoid,attack", 50), ("attack,attack", 50), ("avoid,attack", 6), ("attack,attack", 6))
     time_game(Plan("avoid,attack", 6, 10.0), 0, count_work(Plan("avoid,attack", 6, 10.0), 0))  # compiles
+    head = [
+        *("S1 / S2", "N", "timeouts", "events", "conflicts"),
+        *("best ms", "median ms", "robot-s/CPU-s", "× bare loop", "timeouts only"),
+    ]
     print_table(
         f"CPU time of a game of {duration:g} s, recording off, {seeds} seeds, best of {repetitions} each",
-        [
-            *("S1 / S2", "N", "timeouts", "events", "conflicts"),
-            *("best ms", "median ms", "robot-s/CPU-s", "× bare loop", "timeouts only"),
-        ],
+        head,
         [speed(Plan(policies, n, duration), range(seeds), repetitions) for policies, n in pairs],
         f"bounds, avoid / attack at N = 50: ≤ {MOST_TIMES_BARE:g} × a bare SimPy loop of as many events, "
         f"≥ {LEAST_THROUGHPUT:,} robot-s/CPU-s\n  ({CONTEXT})\n"
         "  timeouts: the robots' legs, turns, flights and fights; events: these and the waits of the motion\n"
         "  process; × bare loop: of as many events, and of as many timeouts as the robots have",
+    )
+    learning = Plan("attack,inter-learner", 50, duration, learning=5 * duration)
+    print_table(
+        f"The same with learning for {learning.learning:g} s before it; conflicts are those of the game",
+        head,
+        [speed(learning, range(seeds), repetitions)],
+        f"bounds: ≤ {MOST_TIMES_BARE:g} × a bare SimPy loop, ≥ {LEAST_LEARNING_THROUGHPUT:,} robot-s/CPU-s",
     )
     print_table(
         f"Constant density, avoid / attack, {duration / 6:g} s",

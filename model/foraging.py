@@ -275,11 +275,11 @@ class GameModel(mesa.Model):
         if self.ended:
             return
         env, kernel = self.env, self._kernel
-        now = cast(int, env.now)
+        now: int = env.now  # type: ignore[assignment]  # whole periods; `cast` would cost a call
         while True:
             if self._due > 0:
                 self._decide(now, self._due)
-            tick, self._due = kernel.advance(now, cast(int, env.peek()))
+            tick, self._due = kernel.advance(now, env.peek())  # type: ignore[arg-type]
             if tick > now or self._due == 0:
                 break
         self._motion.happen_in(tick - now)

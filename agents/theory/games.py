@@ -40,7 +40,7 @@ class NormalForm:
     Raises
     ------
     InputError
-        If the payoffs do not have this shape or are not finite.
+        If two actions have one name, or the payoffs do not have this shape or are not finite.
     """
 
     rows: tuple[str, ...]
@@ -49,6 +49,10 @@ class NormalForm:
     met: Floats
 
     def __post_init__(self) -> None:
+        for name in ("rows", "columns"):
+            actions = getattr(self, name)
+            if len(set(actions)) < len(actions) or not actions:
+                raise InputError(name, actions, "must be actions of different names")
         for name in ("own", "met"):
             payoffs = np.array(getattr(self, name), dtype=float)
             if payoffs.shape != (len(self.rows), len(self.columns)) or not np.isfinite(payoffs).all():

@@ -176,7 +176,7 @@ def read(
     positions: list[tuple[float, float]], met: int, heading: float = 0.0, reach: float = 0.3
 ) -> list[int]:
     forward = math.cos(heading), math.sin(heading)
-    return read_robots(0, met, *forward, np.array(positions), RADIUS, 1.0, reach).tolist()
+    return list(read_robots(0, met, *forward, np.array(positions), RADIUS, 1.0, reach))
 
 
 def test_an_active_sensor_reads_the_nearest_robot_in_its_sector() -> None:

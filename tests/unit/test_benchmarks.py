@@ -67,10 +67,10 @@ def test_the_bare_loop_processes_what_it_is_asked_to(monkeypatch: pytest.MonkeyP
     assert len(made) == 100
 
 
-def test_main_prints_four_tables(sleepless: None, capsys: pytest.CaptureFixture[str]) -> None:
+def test_main_prints_a_table_for_each_cost(sleepless: None, capsys: pytest.CaptureFixture[str]) -> None:
     bench.main(seeds=1, repetitions=1, duration=60.0, sizes=(6, 24))
     printed = capsys.readouterr().out
-    assert printed.count("  bound") == 4
+    assert printed.count("  bound") == 5
     ((n, side, *_),) = [line.split() for line in printed.splitlines() if line.startswith("  24 ")]
     assert (n, side) == ("24", "4.0")  # four times the robots on four times the area
 

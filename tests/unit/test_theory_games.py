@@ -64,6 +64,12 @@ def test_payoffs_must_fill_the_matrix(payoffs: list[list[float]]) -> None:
         NormalForm(ACTIONS, ACTIONS, np.zeros((2, 2)), np.array(payoffs))
 
 
+@pytest.mark.parametrize("actions", [("flight", "flight"), ()])
+def test_actions_have_names_of_their_own(actions: tuple[str, ...]) -> None:
+    with pytest.raises(InputError, match=r"columns=.*must be actions of different names"):
+        NormalForm(ACTIONS, actions, np.zeros((2, len(actions))), np.zeros((2, len(actions))))
+
+
 def test_payoffs_do_not_change() -> None:
     own = np.ones((2, 2))
     form = zero_sum(ACTIONS, ACTIONS, own)
