@@ -1,6 +1,7 @@
 """Reading the tables of a results directory (section 3.5 of the experiments)."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import pandas as pd
@@ -39,6 +40,40 @@ CONFLICTS_NUMBERS = ("robot", "swarm", "opponent", "opponent_swarm", "start", "t
 # What pandas and Arrow raise on damaged bytes: mostly OSError or ValueError, the others where the
 # description of the columns is damaged.
 _DAMAGE = (OSError, ValueError, LookupError, TypeError, RuntimeError)
+
+
+@dataclass(frozen=True)
+class Results:
+    """The tables of a results directory that hold outcomes.
+
+    Attributes
+    ----------
+    runs : pandas.DataFrame
+        As `read_runs` returns them.
+    policies : pandas.DataFrame or None
+        As `read_policies` returns them; None if no swarm learned.
+    """
+
+    runs: pd.DataFrame
+    policies: pd.DataFrame | None = None
+
+
+def read_results(directory: Path) -> Results:
+    """Read what a results directory says of outcomes.
+
+    Parameters
+    ----------
+    directory : Path
+        The results directory that `kswarms run --out` wrote.
+
+    Raises
+    ------
+    InputError
+        As for `read_runs`, and as for `read_policies` if the directory holds policies.
+    """
+    runs = read_runs(directory)
+    learned = (directory / POLICIES_FILE).exists()
+    return Results(runs, read_policies(directory) if learned else None)
 
 
 def read_runs(directory: Path) -> pd.DataFrame:

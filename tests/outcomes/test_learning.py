@@ -4,26 +4,24 @@ Few densities and seeds, as intervals allow, run everywhere; all of them with th
 3000 s of learning and 600 s that count (specification, sections 3.1 and 3.4).
 """
 
-from collections.abc import Sequence
-from functools import lru_cache
-from typing import Final, NamedTuple
+from collections.abc import Callable
+from typing import Any, Final, NamedTuple
 
-import numpy as np
 import pytest
-from scipy import stats
 
-from analysis.published import table_6_1
-from scenarios.catalogue import CATALOGUE
-from scenarios.runner import play_all
-from scenarios.runs import expand
+from analysis.findings import FAILS, FINDINGS, HOLDS, Finding, Verdict, judge
+from analysis.results import Results
+from analysis.tables import learned
 
 LEARNING: Final = (("fig-6.4a", "fig-6.4b"), ("fig-6.6", "fig-6.7", "fig-6.8"))
 """Scenarios of learners that learn about others alone, and of those that learn about their own swarm."""
 DENSITIES: Final = (6, 10, 16, 20, 26, 30, 36, 40, 46, 50)
 FIRST_SEED: Final = 1000
 """Nothing is fitted to the seeds from here on."""
-CONFIDENCE: Final = 0.95
-"""Of one-sided intervals, for all densities together where each has its own."""
+ONE_SIDED: Final = 0.9
+"""Of two-sided intervals: each bound alone is one of 95 %."""
+
+BY_ID: Final = {finding.id: finding for finding in FINDINGS}
 
 
 class Sample(NamedTuple):
@@ -62,60 +60,35 @@ each_sample = pytest.mark.parametrize(
     ],
 )
 
-
-class Played(NamedTuple):
-    """What came out of a game: pucks of both swarms, and the learners' share of fight by swarm-ID."""
-
-    scenario: str
-    n: int
-    seed: int
-    pucks: list[int]
-    fight: dict[int, float]
+Outcomes = Callable[[Sample, str], Results]
 
 
-@lru_cache
-def games(sample: Sample, scenarios: tuple[str, ...]) -> list[Played]:
-    """Play all games of some scenarios, once."""
-    asked = [CATALOGUE[name].replace(densities=sample.densities, seeds=sample.seeds) for name in scenarios]
-    played = []
-    for run, outcome in play_all(expand(asked, FIRST_SEED), jobs=2):
-        pucks = [row["pucks"] for row in outcome.swarms]
-        fight = {row["opponent"]: row["attack_share"] for row in outcome.policies}
-        played += [Played(scenario, run.n, run.seed, pucks, fight) for scenario, _ in run.labels]
-    assert len(played) == len(asked) * len(sample.densities) * sample.seeds
-    return played
+@pytest.fixture
+def outcomes(played: Callable[..., Results]) -> Outcomes:
+    """Return a player of the group of scenarios that one belongs to."""
+
+    def of(sample: Sample, scenario: str) -> Results:
+        (group,) = (group for group in sample.scenarios if scenario in group)
+        return played(group, sample.densities, sample.seeds, FIRST_SEED)
+
+    return of
 
 
-def of(sample: Sample, scenario: str, *densities: int) -> list[Played]:
-    """Return the games of a scenario, at some densities or at all."""
-    densities = densities or sample.densities
-    (group,) = (group for group in sample.scenarios if scenario in group)
-    return [game for game in games(sample, group) if game.scenario == scenario and game.n in densities]
-
-
-def leads(sample: Sample, scenario: str, *densities: int) -> list[float]:
-    """Return, for each seed, what the learner scored more than its opponent (mean over densities)."""
-    by_seed: dict[int, list[int]] = {}
-    for game in of(sample, scenario, *densities):
-        by_seed.setdefault(game.seed, []).append(game.pucks[1] - game.pucks[0])
-    return [float(np.mean(leads)) for leads in by_seed.values()]
-
-
-def bounds(values: Sequence[float], cases: int = 1) -> tuple[float, float]:
-    """Return the lower and the upper bound of the mean, each one-sided; of several cases all at once."""
-    reach = stats.t.ppf(1 - (1 - CONFIDENCE) / cases, len(values) - 1) * stats.sem(values)
-    return float(np.mean(values) - reach), float(np.mean(values) + reach)
+def without_margin(finding: Finding, **changes: Any) -> Finding:
+    """Return a finding that grants nothing, each bound of its intervals at 95 %."""
+    claim = finding.claim.replace(margin=0.0, **changes)
+    return finding.replace(claim=claim, confidence=ONE_SIDED)
 
 
 @each_sample
-@pytest.mark.parametrize("scenario", ["fig-6.4a", "fig-6.4b"])
+@pytest.mark.parametrize("figure", ["6.4a", "6.4b"])
 def test_the_learner_scores_at_least_as_much_as_its_opponent_at_every_density(
-    scenario: str, sample: Sample
+    figure: str, sample: Sample, outcomes: Outcomes
 ) -> None:
-    for n in sample.densities:
-        # Where all learn flight both swarms do the same: a tie, which one interval in twenty denies.
-        _, upper = bounds(leads(sample, scenario, n), cases=len(sample.densities))
-        assert upper >= 0, f"N = {n}: the learner's lead is at most {upper:.1f} pucks"
+    # Where all learn flight both swarms do the same: a tie, which one interval in twenty denies.
+    verdict = judge(without_margin(BY_ID[f"{figure}-at-least"]), outcomes(sample, f"fig-{figure}"))
+    assert verdict.verdict != FAILS, str(verdict)
+    assert verdict.seeds == sample.seeds
 
 
 @pytest.mark.parametrize(
@@ -125,65 +98,52 @@ def test_the_learner_scores_at_least_as_much_as_its_opponent_at_every_density(
         pytest.param(ALL, id="all", marks=pytest.mark.full),
     ],
 )
-def test_against_attackers_the_learner_scores_clearly_more(sample: Sample) -> None:
+def test_against_attackers_the_learner_scores_clearly_more(sample: Sample, outcomes: Outcomes) -> None:
     """The source has it so at every N; twenty seeds show it over several N together."""
-    lower, _ = bounds(leads(sample, "fig-6.4b"))
-    assert lower > 0, f"the learner's lead may be {lower:.1f} pucks"
+    finding = without_margin(BY_ID["6.4b-clearly-more"], over="mean over N")
+    verdict = judge(finding, outcomes(sample, "fig-6.4b"))
+    assert verdict.verdict == HOLDS, str(verdict)
 
 
 @each_sample
-@pytest.mark.parametrize("scenario", ["fig-6.6", "fig-6.7", "fig-6.8"])
-def test_more_than_99_percent_learn_flight_within_the_swarm(scenario: str, sample: Sample) -> None:
-    played = of(sample, scenario)
-    robots = sum(game.n // 2 for game in played)
-    fighters = sum(round(game.fight[2] * (game.n // 2)) for game in played)
-    assert fighters < 0.01 * robots
+@pytest.mark.parametrize("figure", ["6.6", "6.7", "6.8"])
+def test_more_than_99_percent_learn_flight_within_the_swarm(
+    figure: str, sample: Sample, outcomes: Outcomes
+) -> None:
+    finding = BY_ID[f"{figure}-flight-within"].replace(confidence=ONE_SIDED)
+    verdict = judge(finding, outcomes(sample, f"fig-{figure}"))
+    assert effect(verdict) > 99
     if sample is ALL:  # enough robots to leave no doubt
-        interval = stats.binomtest(fighters, robots, alternative="less").proportion_ci(CONFIDENCE)
-        assert interval.high < 0.01
+        assert verdict.verdict == HOLDS, str(verdict)
 
 
-def shares(sample: Sample, scenario: str) -> list[float]:
-    """Return what part of the robots learned to attack the other swarm, for each density (percent)."""
-    return [
-        100 * float(np.mean([game.fight[1] for game in of(sample, scenario, n)])) for n in sample.densities
-    ]
-
-
-def columns() -> list[tuple[str, str]]:
-    """Return the scenarios of Table 6.1 with the table's names for them."""
-    return [("fig-6.4a", "fig_6_4a_attack_pct"), ("fig-6.4b", "fig_6_4b_attack_pct")]
+def effect(verdict: Verdict) -> float:
+    assert verdict.effect is not None, str(verdict)
+    return verdict.effect
 
 
 @each_sample
-def test_table_6_1(sample: Sample) -> None:
-    published = table_6_1().set_index("n").loc[list(sample.densities)]
-    errors = [np.subtract(shares(sample, scenario), published[column]) for scenario, column in columns()]
-    assert np.abs(errors).mean() <= sample.table_error
+def test_table_6_1(sample: Sample, outcomes: Outcomes) -> None:
+    verdict = judge(BY_ID["table-6.1"], outcomes(sample, "fig-6.4a"))
+    assert effect(verdict) <= sample.table_error, str(verdict)
+    assert f"{2 * len(sample.densities)} cells" in verdict.note
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("scenario", ["fig-6.4a", "fig-6.4b"])
-def test_the_more_robots_the_more_learn_to_attack(scenario: str) -> None:
-    assert stats.spearmanr(DENSITIES, shares(ALL, scenario)).statistic > 0.8
+@pytest.mark.parametrize("figure", ["6.4a", "6.4b"])
+def test_the_more_robots_the_more_learn_to_attack(figure: str, outcomes: Outcomes) -> None:
+    verdict = judge(BY_ID[f"table-6.1-rises-{figure}"], outcomes(ALL, f"fig-{figure}"))
+    assert verdict.verdict == HOLDS, str(verdict)
+    assert effect(verdict) > 0.8
 
 
 @each_sample
 @pytest.mark.parametrize("scenario", ["fig-6.4a", "fig-6.4b"])
 def test_almost_nobody_learns_to_attack_where_robots_are_few_and_most_do_where_they_are_many(
-    scenario: str, sample: Sample
+    scenario: str, sample: Sample, outcomes: Outcomes
 ) -> None:
-    few, *_, many = shares(sample, scenario)
+    policies = outcomes(sample, scenario).policies
+    assert policies is not None
+    few, *_, many = learned(policies, [scenario])["measured"]
     assert few < 10
     assert many > 60
-
-
-def test_the_bounds_can_tell_a_lead_from_none() -> None:
-    assert bounds([3.0, 4.0, 5.0, 3.5])[0] > 0
-    assert bounds([-3.0, -4.0, -5.0, -3.5])[1] < 0
-    lower, upper = bounds([-3.0, 3.0, 1.0, -1.5])
-    assert lower < 0 < upper
-    # Against a table of one-sided quantiles: t(0.95; 3) = 2.3534, s/√n = 0.5.
-    assert bounds([1.0, 1.0, 3.0, 1.0])[0] == pytest.approx(1.5 - 2.3534 * 0.5, abs=1e-4)
-    # Five cases at once take t(0.99; 3) = 4.5407.
-    assert bounds([1.0, 1.0, 3.0, 1.0], cases=5)[1] == pytest.approx(1.5 + 4.5407 * 0.5, abs=1e-4)

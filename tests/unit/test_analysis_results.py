@@ -12,6 +12,7 @@ from analysis.results import (
     RUNS_NUMBERS,
     RUNS_TEXT,
     read_policies,
+    read_results,
     read_runs,
 )
 
@@ -106,3 +107,22 @@ def test_policies_are_read_and_checked_by_their_own_columns(tmp_path: Path) -> N
 def test_directory_without_policies(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"must be a directory that holds policies\.parquet"):
         read_policies(tmp_path)
+
+
+def test_results_are_both_tables(tmp_path: Path, runs: pd.DataFrame) -> None:
+    runs.to_parquet(tmp_path / "runs.parquet")
+    assert read_results(tmp_path).policies is None
+    policies = pd.DataFrame(
+        {name: ["a"] for name in POLICIES_TEXT} | {name: [1] for name in POLICIES_NUMBERS}
+    )
+    policies.to_parquet(tmp_path / "policies.parquet")
+    results = read_results(tmp_path)
+    assert results.policies is not None
+    assert (len(results.runs), len(results.policies)) == (2, 1)
+
+
+def test_policies_that_are_damaged_are_not_taken_for_none(tmp_path: Path, runs: pd.DataFrame) -> None:
+    runs.to_parquet(tmp_path / "runs.parquet")
+    (tmp_path / "policies.parquet").write_bytes(b"not Parquet at all")
+    with pytest.raises(InputError, match="must be a readable Parquet file"):
+        read_results(tmp_path)

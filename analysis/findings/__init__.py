@@ -1,0 +1,34 @@
+"""Findings: sentences about outcomes that results decide (section 3.4 of the experiments).
+
+`FINDINGS` are those of the thesis; `load` reads others from TOML; `judge` says whether one holds.
+"""
+
+from collections.abc import Iterable
+from importlib.resources import files
+from typing import Final
+
+from analysis.findings.claims import Finding, load, parse
+from analysis.findings.judging import judge
+from analysis.findings.verdicts import FAILS, HOLDS, NO_DATA, UNDECIDED, Verdict
+from analysis.results import Results
+
+__all__ = [
+    "FAILS",
+    "FINDINGS",
+    "HOLDS",
+    "NO_DATA",
+    "UNDECIDED",
+    "Finding",
+    "Verdict",
+    "judge",
+    "judge_all",
+    "load",
+]
+
+FINDINGS: Final = parse(files(__name__).joinpath("thesis.toml").read_text(encoding="utf-8"), "thesis.toml")
+"""What the source found, as far as its outcomes are given."""
+
+
+def judge_all(results: Results, findings: Iterable[Finding] = FINDINGS) -> list[Verdict]:
+    """Judge findings one after the other, in their order, as `judge` does."""
+    return [judge(finding, results) for finding in findings]

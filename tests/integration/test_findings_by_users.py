@@ -1,0 +1,37 @@
+"""The page about findings, as a user would follow it: its file, its test, its command."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from scenarios.cli.app import invoke
+
+PAGE = Path(__file__).parents[2] / "docs" / "findings.md"
+
+
+def block(name: str) -> str:
+    """Return the block of code on the page that begins with the comment ``# name``."""
+    (found,) = re.findall(
+        rf"```\w+\n(# {re.escape(name)}\n.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL
+    )
+    return str(found)
+
+
+@pytest.mark.slow
+def test_three_lines_assert_a_finding(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    command = re.search(r"`kswarms (run .*? --out results/crowd)`", PAGE.read_text(encoding="utf-8"))
+    assert command
+    assert invoke([*command[1].split(), "--no-figures", "--jobs", "1"]) == 0
+    names: dict[str, Any] = {}
+    exec(block("test_crowd.py"), names)  # what pytest does with a file of tests: run it, call what it defines
+
+    (tmp_path / "crowd.toml").write_text(block("crowd.toml"), encoding="utf-8")
+    names["test_fighters_gather_less"]()
+    (tmp_path / "crowd.toml").write_text(block("crowd.toml").replace('"<"', '">"'), encoding="utf-8")
+    with pytest.raises(AssertionError, match="fighters-gather-less fails: -"):
+        names["test_fighters_gather_less"]()

@@ -1,0 +1,447 @@
+"""Verdicts: for every kind of claim there are results for which it holds, fails, is undecided, is unknown."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy import stats
+
+from agents.errors import InputError
+from analysis.findings import FAILS, FINDINGS, HOLDS, NO_DATA, UNDECIDED, Finding, Verdict, judge, judge_all
+from analysis.findings.claims import (
+    Agreement,
+    Claim,
+    Compare,
+    Overtake,
+    Peak,
+    Quantity,
+    Share,
+    Trend,
+)
+from analysis.findings.verdicts import Region
+from analysis.published import table_6_1
+from analysis.results import Results
+from analysis.statistics import Interval
+
+DENSITIES = (6, 16, 30, 40, 50)
+S1, S2 = Quantity(scenario="duel", swarm=1), Quantity(scenario="duel", swarm=2)
+BOTH = Quantity(scenario="duel")
+LEARNED = Quantity(measure="learned_attack", scenario="fig-6.4a", swarm=2)
+WITHIN = Quantity(measure="learned_flight_within", scenario="fig-6.8", swarm=2)
+
+
+def noise(seeds: int, densities: int, scale: float = 1.0, seed: int = 0) -> Any:
+    """Return draws, (seeds, densities), whose mean is 0 at each density."""
+    draws = np.random.default_rng(seed).normal(scale=scale, size=(seeds, densities))
+    return draws - draws.mean(axis=0)
+
+
+def runs(
+    curves: Sequence[Sequence[float]],
+    densities: Sequence[int] = DENSITIES,
+    seeds: int = 10,
+    scenario: str = "duel",
+    condition: str = "",
+    scale: float = 1.0,
+) -> pd.DataFrame:
+    """Return runs in which swarm k scores, on the mean of the seeds, the k-th curve."""
+    rows = []
+    for swarm, curve in enumerate(curves, start=1):
+        values = np.asarray(curve) + noise(seeds, len(densities), scale, seed=swarm)
+        for (seed, column), pucks in np.ndenumerate(values):
+            n = densities[column]
+            size, lived = n // 2, 600.0 * (n // 2)
+            row = {"scenario": scenario, "condition": condition, "n": n, "seed": seed, "swarm": swarm}
+            row |= {"size": size, "pucks": pucks, "sud": pucks, "duration": 600.0}
+            row |= {"t_a_intra": 0.1 * lived, "t_a_inter": 0.3 * lived, "t_p": 0.6 * lived}
+            row |= {"conflicts_intra": 3, "conflicts_inter": 5}
+            rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def policies(
+    shares: Sequence[float],
+    densities: Sequence[int] = DENSITIES,
+    seeds: int = 10,
+    scenario: str = "fig-6.4a",
+    opponent: int = 1,
+    scale: float = 0.0,
+) -> pd.DataFrame:
+    """Return policies of S2 in which these shares learned to attack a swarm."""
+    values = np.asarray(shares) + noise(seeds, len(densities), scale)
+    rows = [
+        {"scenario": scenario, "condition": "", "n": densities[column], "seed": seed, "swarm": 2}
+        | {"opponent": opponent, "action": action, "attack_share": share}
+        for (seed, column), share in np.ndenumerate(values)
+        for action in ("flight", "fight")
+    ]
+    return pd.DataFrame(rows)
+
+
+def learners(shares: Sequence[float], **rest: Any) -> Results:
+    """Return results of learners, and the games they played."""
+    scenario = rest.get("scenario", "fig-6.4a")
+    seeds = rest.get("seeds", 10)
+    densities = rest.get("densities", DENSITIES)
+    level = [0.0] * len(densities)
+    return Results(runs([level, level], densities, seeds, scenario), policies(shares, **rest))
+
+
+def verdict_on(claim: Claim, results: Results, confidence: float = 0.95) -> Verdict:
+    return judge(Finding(id="it", statement="It is so.", claim=claim, confidence=confidence), results)
+
+
+def more(relation: str = ">", over: str = "each N", margin: float = 0.0, **rest: Any) -> Compare:
+    return Compare(**{"left": S2, "relation": relation, "right": S1, "over": over, "margin": margin, **rest})
+
+
+LEVEL = [10.0] * 5
+
+
+def duel(lead: Sequence[float], **rest: Any) -> Results:
+    """Return results in which S2 scores so much more than S1."""
+    return Results(runs([LEVEL, [10 + each for each in lead]], **rest))
+
+
+FAR, NEAR, TIE, BEHIND = [5.0] * 5, [0.5] * 5, [0.0] * 5, [-5.0] * 5
+MIXED = [5.0, 5.0, 5.0, 5.0, -5.0]
+
+
+@pytest.mark.parametrize(
+    ("claim", "lead", "expected"),
+    [
+        (more(">"), FAR, HOLDS),
+        (more(">"), TIE, UNDECIDED),
+        (more(">"), BEHIND, FAILS),
+        (more(">"), MIXED, FAILS),
+        (more(">", margin=4), FAR, HOLDS),
+        (more(">", margin=5), FAR, UNDECIDED),
+        (more(">", margin=8), FAR, FAILS),
+        (more(">="), FAR, HOLDS),
+        (more(">="), TIE, UNDECIDED),
+        (more(">=", margin=3), TIE, HOLDS),
+        (more(">=", margin=3), BEHIND, FAILS),
+        (more("<"), BEHIND, HOLDS),
+        (more("<"), TIE, UNDECIDED),
+        (more("<"), FAR, FAILS),
+        (more("<="), BEHIND, HOLDS),
+        (more("<=", margin=3), TIE, HOLDS),
+        (more("<=", margin=3), FAR, FAILS),
+        (more("within", margin=3), TIE, HOLDS),
+        (more("within", margin=5), FAR, UNDECIDED),
+        (more("within", margin=3), FAR, FAILS),
+        (more("within", margin=3), BEHIND, FAILS),
+        (more(">", over="mean over N"), MIXED, HOLDS),
+        (more(">", over="mean over N"), TIE, UNDECIDED),
+        (more(">", over="mean over N"), BEHIND, FAILS),
+        (more(">", over="mean over N", margin=4), MIXED, FAILS),
+        (more(">", over="sum over N", margin=10), MIXED, HOLDS),
+        (more(">", over="sum over N", margin=20), MIXED, FAILS),
+        (more(">", over="sum over N"), TIE, UNDECIDED),
+        (more(">", densities=(6, 30)), MIXED, HOLDS),
+        (more(">", densities=(50,)), MIXED, FAILS),
+        (more(">", right=15.0), FAR, UNDECIDED),
+        (more(">", right=13.0), FAR, HOLDS),
+        (more("<", right=13.0), FAR, FAILS),
+        (Overtake(ahead=S2, behind=S1, between=(16, 30)), [-5, -5, 5, 5, 5], HOLDS),
+        (Overtake(ahead=S2, behind=S1, between=(30, 40)), [-5, -5, 5, 5, 5], FAILS),
+        (Overtake(ahead=S2, behind=S1, between=(16, 30)), [-5, -5, 0, 5, 5], UNDECIDED),
+        (Overtake(ahead=S2, behind=S1, between=(16, 30)), FAR, FAILS),
+        (Overtake(ahead=S2, behind=S1, between=(16, 30)), BEHIND, FAILS),
+        (Overtake(ahead=S2, behind=S1, between=(16, 30)), TIE, UNDECIDED),
+        (Peak(quantity=S2), [0, 5, 9, 5, 0], HOLDS),
+        (Peak(quantity=S2), [0, 3, 6, 9, 12], FAILS),
+        (Peak(quantity=S2), [12, 9, 6, 3, 0], FAILS),
+        (Peak(quantity=S2), [5, 3, 0, 3, 5], FAILS),
+        (Peak(quantity=S2), TIE, UNDECIDED),
+        (Trend(quantity=S2), [0, 3, 6, 9, 12], HOLDS),
+        (Trend(quantity=S2), [12, 9, 6, 3, 0], FAILS),
+        (Trend(quantity=S2), [0, 0.1, 0, 0.1, 0], UNDECIDED),
+        (Trend(quantity=S2, above=0.9), [0, 3, 2.9, 9, 12], UNDECIDED),
+    ],
+    ids=str,
+)
+def test_what_runs_decide(claim: Claim, lead: Sequence[float], expected: str) -> None:
+    verdict = verdict_on(claim, duel(lead))
+    assert verdict.verdict == expected, str(verdict)
+    assert verdict.seeds == 10
+
+
+@pytest.mark.parametrize(
+    ("shares", "scale", "expected"),
+    [([0.0] * 5, 0.0, HOLDS), ([0.05] * 5, 0.01, FAILS), ([0.01] * 5, 0.005, UNDECIDED)],
+)
+def test_the_share_of_robots(shares: Sequence[float], scale: float, expected: str) -> None:
+    results = learners(shares, scenario="fig-6.8", opponent=2, scale=scale)
+    verdict = verdict_on(Share(quantity=WITHIN, above=99), results)
+    assert verdict.verdict == expected, str(verdict)
+    assert verdict.unit == "% of robots"
+
+
+def test_few_robots_without_an_exception_do_not_prove_that_there_is_none() -> None:
+    # 3 robots in each of 10 games: the exact binomial interval of 30 out of 30 begins at 88 %.
+    results = learners([0.0], scenario="fig-6.8", opponent=2, densities=(6,))
+    verdict = verdict_on(Share(quantity=WITHIN, above=99), results)
+    assert (verdict.verdict, verdict.effect, verdict.high) == (UNDECIDED, 100.0, 100.0)
+    assert verdict.low == pytest.approx(100 * 0.025 ** (1 / 30))
+    assert "30 of 30 robots" in verdict.note
+
+
+def test_robots_of_a_game_are_not_independent() -> None:
+    # In half of the games all attack: as many robots as with the half in each, but less is known.
+    results = learners([0.5], densities=(50,), scale=0.0)
+    assert results.policies is not None
+    together = results.policies.assign(attack_share=results.policies["seed"] % 2)
+    claim = Share(quantity=LEARNED, above=0)
+    one, other = verdict_on(claim, results), verdict_on(claim, Results(results.runs, together))
+    assert one.effect == other.effect == 50.0
+    assert one.low is not None
+    assert other.low is not None
+    assert other.low < one.low - 10
+
+
+TABLE = table_6_1().set_index("n")["fig_6_4a_attack_pct"]
+PUBLISHED = [TABLE[n] / 100 for n in DENSITIES]
+
+
+@pytest.mark.parametrize(("off", "expected"), [(0.0, HOLDS), (0.03, HOLDS), (0.05, UNDECIDED), (0.2, FAILS)])
+def test_agreement_with_the_published_table(off: float, expected: str) -> None:
+    results = learners([share + off for share in PUBLISHED], scale=0.02)
+    verdict = verdict_on(Agreement(cells=(LEARNED,), margin=5), results)
+    assert verdict.verdict == expected, str(verdict)
+    assert verdict.effect == pytest.approx(100 * off, abs=1e-9)
+    assert "5 cells" in verdict.note
+
+
+@pytest.mark.parametrize(
+    ("claim", "note"),
+    [
+        (more(right=Quantity(scenario="other", swarm=1)), "no runs of other S1"),
+        (more(left=Quantity(scenario="duel", condition="x", swarm=3)), "no runs of duel condition 'x' S3"),
+        (more(densities=(26, 46)), "nothing played at N = 26, 46"),
+        (Overtake(ahead=S2, behind=S1, between=(30, 36)), "nothing played at N = 36"),
+        (Peak(quantity=S2, densities=(6, 16)), "N = 6, 16: a rise and a fall take three densities"),
+        (Trend(quantity=S2, densities=(6, 16)), "N = 6, 16: a trend takes three densities"),
+        (Share(quantity=WITHIN, above=99), "no runs of fig-6.8 S2 (learned_flight_within)"),
+        (Agreement(cells=(LEARNED,), margin=5), "no runs of fig-6.4a S2 (learned_attack)"),
+    ],
+    ids=str,
+)
+def test_what_has_not_been_played(claim: Claim, note: str) -> None:
+    assert verdict_on(claim, duel(FAR)) == Verdict("it", "It is so.", NO_DATA, note=note)
+
+
+def test_nothing_published_of_these_densities() -> None:
+    verdict = verdict_on(Agreement(cells=(LEARNED,), margin=5), learners([0.0], densities=(8,)))
+    assert (verdict.verdict, verdict.note) == (NO_DATA, "nothing published of N = 8")
+
+
+def test_scenarios_played_at_different_densities_cannot_be_compared() -> None:
+    other = runs([LEVEL[:2]], densities=(8, 18), scenario="other")
+    results = Results(pd.concat([duel(FAR).runs, other]))
+    verdict = verdict_on(more(right=Quantity(scenario="other", swarm=1)), results)
+    assert (verdict.verdict, verdict.note) == (NO_DATA, "nothing played at the same N")
+
+
+@pytest.mark.parametrize(
+    ("over", "note"),
+    [
+        ("each N", "no seed has been played on both sides at N = 6, 16, 30, 40, 50"),
+        ("mean over N", "no seed has been played at all of N = 6, 16, 30, 40, 50"),
+    ],
+)
+def test_other_seeds_are_no_pairs(over: str, note: str) -> None:
+    other = runs([LEVEL], scenario="other").assign(seed=lambda rows: rows["seed"] + 100)
+    results = Results(pd.concat([duel(FAR).runs, other]))
+    verdict = verdict_on(more(right=Quantity(scenario="other", swarm=1), over=over), results)
+    assert (verdict.verdict, verdict.note) == (NO_DATA, note)
+
+
+# ---------------------------------------------------------------------------------------- what a verdict says
+
+
+def test_a_verdict_at_every_density_shows_the_one_that_decides() -> None:
+    verdict = verdict_on(more(), duel([5, 3, 5, 5, 5]))
+    assert verdict.effect == pytest.approx(3)
+    assert verdict.low is not None
+    assert verdict.high is not None
+    assert 0 < verdict.low < 3 < verdict.high
+    assert verdict.note == "N = 6, 16, 30, 40, 50; the numbers are of N = 16, where it is least so"
+    failed = verdict_on(more(), duel([5, -4, 5, -9, 5]))
+    assert failed.effect == pytest.approx(-9)
+    assert failed.note.endswith("false at N = 16, 40")
+
+
+def test_a_verdict_in_a_line() -> None:
+    verdict = Verdict("it", "It is so.", HOLDS, 1.25, 0.5, 2.0, "pucks", 8, "N = 6")
+    assert str(verdict) == "it holds: 1.25 pucks (0.5 … 2); 8 seeds; N = 6"
+    open_ended = Verdict("it", "It is so.", UNDECIDED, 36.125, 30.0, None, "robots", 8, "N = 6, 50")
+    assert str(open_ended) == "it undecided: 36.12 robots (30 … –); 8 seeds; N = 6, 50"
+    unknown = Verdict("it", "It is so.", NO_DATA, note="no runs of fig-6.1a")
+    assert str(unknown) == "it no data; 0 seeds; no runs of fig-6.1a"
+
+
+def test_an_undecided_verdict_says_how_many_seeds_would_decide() -> None:
+    verdict = verdict_on(more(), duel([5, 0.5, 5, 5, 5]))
+    assert verdict.verdict == UNDECIDED
+    assert "sure at N = 6, 30, 40, 50" in verdict.note
+    assert "more seeds decide it (power 80%)" in verdict.note
+    assert "no number of seeds would decide it" in verdict_on(more(over="mean over N"), duel(TIE)).note
+
+
+def test_a_density_that_is_missing_is_named() -> None:
+    verdict = verdict_on(more(densities=(6, 26, 30)), duel(FAR))
+    assert (verdict.verdict, verdict.note.split("; ")[1]) == (HOLDS, "without N = 26")
+
+
+@pytest.mark.parametrize(
+    "claim",
+    [
+        more(),
+        more(over="mean over N"),
+        Overtake(ahead=S2, behind=S1, between=(16, 30)),
+        Peak(quantity=S2),
+        Trend(quantity=S2),
+    ],
+    ids=str,
+)
+def test_too_few_seeds_decide_nothing(claim: Claim) -> None:
+    verdict = verdict_on(claim, duel([-9, 9, 99, 9, 9], seeds=4))
+    assert (verdict.verdict, verdict.low, verdict.high, verdict.seeds) == (UNDECIDED, None, None, 4)
+    assert verdict.note.endswith("seeds at least")
+
+
+def test_to_fail_at_one_of_many_densities_takes_more_seeds_than_at_one() -> None:
+    # Six seeds suffice for 95 %, but five densities take 99 %: eight.
+    assert verdict_on(more(), duel(BEHIND, seeds=7)).verdict == UNDECIDED
+    assert verdict_on(more(), duel(BEHIND, seeds=8)).verdict == FAILS
+    assert verdict_on(more(densities=(6,)), duel(BEHIND, seeds=6)).verdict == FAILS
+
+
+def test_a_single_seed_gives_its_number_alone() -> None:
+    verdict = verdict_on(more(over="mean over N"), duel(FAR, seeds=1))
+    assert (verdict.verdict, verdict.effect, verdict.low) == (UNDECIDED, 5.0, None)
+
+
+def test_a_lead_in_doubt_at_either_end_is_told() -> None:
+    verdict = verdict_on(Overtake(ahead=S2, behind=S1, between=(16, 30)), duel([1, 1, 1, 1, 0.5]))
+    assert (verdict.verdict, verdict.low, verdict.high) == (UNDECIDED, None, None)
+    assert "perhaps ahead from N = 6 on" in verdict.note
+    assert "perhaps not ahead at N = 50" in verdict.note
+    assert (
+        "the mean curves do not cross"
+        in verdict_on(Overtake(ahead=S2, behind=S1, between=(16, 30)), duel(FAR)).note
+    )
+
+
+def test_only_seeds_that_both_sides_have_are_compared() -> None:
+    results = duel(FAR)
+    kept = (results.runs["swarm"] == 1) | (results.runs["seed"] >= 2) | (results.runs["n"] != 16)
+    verdict = verdict_on(more(), Results(results.runs[kept]))
+    assert (verdict.verdict, verdict.seeds) == (HOLDS, 8)
+
+
+@pytest.mark.parametrize(
+    ("measure", "expected", "unit"),
+    [
+        ("time_in_conflict", 40.0, "% of time"),
+        ("time_inter", 30.0, "% of time"),
+        ("time_intra", 10.0, "% of time"),
+        ("conflicts_inter", 10.0, "conflicts"),
+        ("conflicts_intra", 6.0, "conflicts"),
+        ("pucks", 20.0, "pucks"),
+    ],
+)
+def test_what_all_swarms_together_measure(measure: str, expected: float, unit: str) -> None:
+    claim = Compare(left=BOTH.replace(measure=measure), relation=">", right=0.0, over="mean over N")
+    verdict = verdict_on(claim, duel(TIE))
+    assert (verdict.effect, verdict.unit) == (pytest.approx(expected), unit)
+
+
+def test_the_difference_of_percentages_is_in_points() -> None:
+    claim = more(left=S2.replace(measure="time_inter"), right=S2.replace(measure="time_intra"))
+    verdict = verdict_on(claim, duel(TIE))
+    assert (verdict.effect, verdict.unit, verdict.verdict) == (pytest.approx(20), "percentage points", HOLDS)
+
+
+@pytest.mark.parametrize("lead", [FAR, NEAR, TIE, BEHIND, MIXED], ids=str)
+@pytest.mark.parametrize(("relation", "reverse"), [(">", "<"), (">=", "<="), ("within", "within")])
+def test_sides_may_be_exchanged(lead: Sequence[float], relation: str, reverse: str) -> None:
+    there = verdict_on(more(relation, margin=0.5), duel(lead))
+    back = verdict_on(more(reverse, margin=0.5, left=S1, right=S2), duel(lead))
+    assert there.verdict == back.verdict
+    assert there.effect == pytest.approx(-back.effect if back.effect is not None else None)
+
+
+def test_the_order_of_rows_does_not_matter() -> None:
+    results = duel(NEAR)
+    shuffled = Results(results.runs.sample(frac=1, random_state=1))
+    for claim in (more(), more(over="sum over N"), Overtake(ahead=S2, behind=S1, between=(16, 30))):
+        assert verdict_on(claim, shuffled) == verdict_on(claim, results)
+
+
+# ---------------------------------------------------------------------------------------- odds of being wrong
+
+
+@pytest.mark.slow
+def test_a_tie_is_called_a_loss_in_at_most_5_of_100_cases() -> None:
+    """Four densities in truth level: "at least as much at every N" is true, and "more at every N" false."""
+    at_least, clearly = [], []
+    for seed in range(60):
+        draws = np.random.default_rng(seed).normal(size=(10, 4))
+        rows = runs([LEVEL[:4], LEVEL[:4]], DENSITIES[:4], scale=0.0)
+        of_s2 = rows["swarm"] == 2
+        rows.loc[of_s2, "pucks"] += draws.ravel()
+        at_least.append(verdict_on(more(">="), Results(rows)).verdict)
+        clearly.append(verdict_on(more(">"), Results(rows)).verdict)
+    assert at_least.count(FAILS) <= stats.binom.ppf(0.999, 60, 0.05)
+    assert clearly.count(HOLDS) == 0  # at one density in 40, at four never
+
+
+# ------------------------------------------------------------------------------------------------ bad results
+
+
+def test_a_game_that_is_there_twice() -> None:
+    results = duel(FAR)
+    with pytest.raises(InputError, match="runs='duel': must have one row for each"):
+        verdict_on(more(), Results(pd.concat([results.runs, results.runs])))
+
+
+def test_policies_without_their_games() -> None:
+    results = Results(duel(FAR).runs, policies([0.0] * 5))
+    with pytest.raises(InputError, match=r"runs='fig-6\.4a': must have the games"):
+        verdict_on(Share(quantity=LEARNED, above=50), results)
+
+
+def test_an_opponent_must_be_named_among_several() -> None:
+    both = pd.concat([policies([0.0] * 5), policies([1.0] * 5, opponent=3)])
+    results = Results(learners([0.0] * 5).runs, both)
+    claim = Compare(left=LEARNED, relation="<", right=50.0)
+    with pytest.raises(InputError, match=r"opponent=None: must be one of 1, 3 in fig-6\.4a"):
+        verdict_on(claim, results)
+    for opponent, expected in ((1, HOLDS), (3, FAILS)):
+        named = claim.replace(left=LEARNED.replace(opponent=opponent))
+        assert verdict_on(named, results).verdict == expected
+
+
+# ------------------------------------------------------------------------------------------- the thesis's own
+
+
+def test_without_runs_of_its_scenarios_no_finding_is_decided() -> None:
+    verdicts = judge_all(duel(FAR))
+    assert [verdict.finding for verdict in verdicts] == [finding.id for finding in FINDINGS]
+    assert {verdict.verdict for verdict in verdicts} == {NO_DATA}
+
+
+def test_a_region_says_where_an_interval_lies() -> None:
+    above, within = Region(0, math.inf, closed=False), Region(-1, 1)
+    assert above.verdict(Interval(0.0, 0.0, 0.0)) == FAILS
+    assert above.verdict(Interval(1.0, 0.0, 2.0)) == UNDECIDED
+    assert above.verdict(Interval(1.0, 0.1, 2.0)) == HOLDS
+    assert within.verdict(Interval(0.0, -1.0, 1.0)) == HOLDS
+    assert within.verdict(Interval(1.0, 1.0, 1.5)) == UNDECIDED
+    assert within.verdict(Interval(1.2, 1.1, 1.5)) == FAILS
+    assert within.verdict(Interval(0.0, -math.inf, math.inf)) == UNDECIDED
