@@ -10,7 +10,7 @@ DEMO := results/demo
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:  # two installs into one environment would collide
-.PHONY: help demo test lint types bench full clean
+.PHONY: help demo test lint types docs bench full clean
 
 help:  ## show this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-6s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -19,7 +19,7 @@ demo: $(RUN)  ## let two swarms compete, in three pairs of policies at ten densi
 	$(BIN)/kswarms run fig-6.1a fig-6.1b fig-6.1c --seeds 10 --out $(DEMO)
 	@echo "before: source $(BIN)/activate  (so that the shell finds kswarms)"
 
-test: lint types  ## lint, types, and every test with its coverage
+test: lint types docs  ## lint, types, documentation, and every test with its coverage
 	$(BIN)/python -m pytest --cov --cov-report=term-missing:skip-covered
 
 lint: $(TEST)  ## ruff
@@ -28,14 +28,18 @@ lint: $(TEST)  ## ruff
 types: $(TEST)  ## mypy, strict
 	$(BIN)/mypy
 
-bench: $(RUN)  ## speed, memory and start-up, with the events and conflicts processed
+docs: $(TEST)  ## build the documentation into site/, notebooks executed, every warning an error
+	NO_MKDOCS_2_WARNING=true $(BIN)/mkdocs build
+
+bench: $(RUN)  ## speed, memory and start-up, with the events and conflicts processed; the report
 	$(BIN)/python benchmarks/bench.py
+	$(BIN)/python benchmarks/report.py
 
 full: $(TEST)  ## the tests again, with every outcome at its full number of seeds (long)
 	$(BIN)/python -m pytest -m "full or not full" -o faulthandler_timeout=0
 
 clean:  ## remove the environment and all caches; results/ stays
-	rm -rf $(VENV) build dist .pytest_cache .hypothesis .mypy_cache .ruff_cache .coverage .coverage.* htmlcov
+	rm -rf $(VENV) build dist site .pytest_cache .hypothesis .mypy_cache .ruff_cache .coverage .coverage.* htmlcov
 	find agents model scenarios analysis tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # One environment, two stamps: `demo` installs what running needs, `test` adds the tools. An install happens

@@ -5,6 +5,7 @@ from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple, TypeVar
 
 from agents.errors import InputError
+from agents.outside import blaming, is_reference, load_class
 from agents.validation import Checked
 
 _Thing = TypeVar("_Thing", bound=Checked)
@@ -54,7 +55,7 @@ def parse_call(field: str, text: str) -> Call:
     return Call(name.strip(), arguments)
 
 
-def build(field: str, text: str, known: Mapping[str, type[_Thing]]) -> _Thing:
+def build(field: str, text: str, known: Mapping[str, type[_Thing]], base: type) -> _Thing:
     """Build the object that a text describes.
 
     Parameters
@@ -62,9 +63,11 @@ def build(field: str, text: str, known: Mapping[str, type[_Thing]]) -> _Thing:
     field : str
         What it is for, to be named in an error.
     text : str
-        Name of one of `known`, with arguments for it.
+        Name of one of `known`, or of a class from outside (`agents.outside`), with arguments for it.
     known : mapping of str to type
         The classes by name.
+    base : type
+        What a class from outside must be a subclass of.
 
     Raises
     ------
@@ -72,13 +75,20 @@ def build(field: str, text: str, known: Mapping[str, type[_Thing]]) -> _Thing:
         If the name is unknown or an argument not allowed.
     """
     call = parse_call(field, text)
-    if call.name not in known:
-        raise InputError(field, call.name, f"must be one of {', '.join(known)}")
-    require_known(field, call, tuple(known[call.name].model_fields))
-    try:
-        return known[call.name](**call.arguments)
-    except InputError as error:
-        raise InputError(f"{field}.{error.field}", error.value, error.allowed) from None
+    if is_reference(call.name):
+        kind: type[_Thing] = load_class(field, call.name, base)
+    elif call.name in known:
+        kind = known[call.name]
+    else:
+        raise InputError(
+            field, call.name, f"must be one of {', '.join(known)}, or a class as my_file.py:MyClass"
+        )
+    require_known(field, call, tuple(kind.model_fields))
+    with blaming(field, call.name, "its constructor"):
+        try:
+            return kind(**call.arguments)
+        except InputError as error:
+            raise InputError(f"{field}.{error.field}", error.value, error.allowed) from None
 
 
 def require_known(field: str, call: Call, allowed: Collection[str]) -> None:

@@ -17,8 +17,7 @@ from agents.actions import TOWARDS, Action
 from agents.body import SENSORS
 from agents.fleet import ACTION, HOME, HOME_TURN, HOMING_ERROR, IDLE, LEG, LEG_OVER, TURN, Fleet
 from agents.habits import Conflict, Habits
-from agents.learner import Learner
-from agents.policies import Policy
+from agents.policies import LearningPolicy, Policy
 from agents.sensors import SECTOR, heads_for, read_robots, walls_met, wrap
 from agents.streams import Purpose, Streams
 
@@ -285,7 +284,7 @@ class Krembot(ContinuousSpaceAgent):
         self.conflicts = [0] * len(self.conflicts)
         if self._learn is not None:
             self._learn = None
-            cast(Learner, self.policy).freeze()
+            cast(LearningPolicy, self.policy).freeze()
 
     def finish(self, now: int) -> None:
         """End the game: what was set to happen later does not."""

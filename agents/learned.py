@@ -54,17 +54,17 @@ class LearnedPolicy:
                 "file", file, f"must hold policies of swarm {setting.swarm + 1}, not {saved['swarm']}"
             )
         robots = saved["robots"]
-        by_name = {action.name: action for action in setting.actions}
+        names = [action.name for action in setting.actions]
         for arm in (arm for arms in robots for arm in arms):
-            if arm["action"] not in by_name:
-                raise InputError("file", file, f"has action {arm['action']}, the game {', '.join(by_name)}")
+            if arm["action"] not in names:
+                raise InputError("file", file, f"has action {arm['action']}, the game {', '.join(names)}")
             if not 1 <= arm["opponent"] <= setting.swarms:
                 raise InputError(
                     "file", file, f"knows swarm {arm['opponent']}, the game has {setting.swarms}"
                 )
         self.swarm = setting.swarm
-        self._flight = next((a for a in setting.actions if a.direction == AWAY), setting.actions[0])
-        self._actions = _best_actions(robots[setting.place % len(robots)], by_name)
+        self._flight = flight(setting.actions)
+        self._actions = best_actions(robots[setting.place % len(robots)], setting.actions)
 
     def choose(self, opponent: int) -> Action:
         """Return the action to take against a robot of swarm `opponent` (counted from 0)."""
@@ -75,14 +75,31 @@ class LearnedPolicy:
         return f"LearnedPolicy(swarm={self.swarm}, actions={known})"
 
 
-def _best_actions(arms: Sequence[Mapping[str, Any]], by_name: Mapping[str, Action]) -> dict[int, Action]:
-    best: dict[int, Mapping[str, Any]] = {}
+def flight(actions: Sequence[Action]) -> Action:
+    """Return what is done where nothing is known: the first action that drives away, or the first of all."""
+    return next((action for action in actions if action.direction == AWAY), actions[0])
+
+
+def best_actions(arms: Sequence[Mapping[str, Any]], actions: Sequence[Action]) -> dict[int, Action]:
+    """Return argmax Q for each swarm (counted from 0) that arms tell of; flight where none was tried.
+
+    Parameters
+    ----------
+    arms : sequence of dict
+        As of `agents.learner.Learner.snapshot`.
+    actions : sequence of Action
+        The actions of the game.
+    """
+    by_name = {action.name: action for action in actions}
+    best: dict[int, Mapping[str, Any] | None] = {}
     for arm in arms:
-        if arm["q"] is not None:
-            opponent = arm["opponent"] - 1
-            if opponent not in best or arm["q"] > best[opponent]["q"]:
-                best[opponent] = arm
-    return {opponent: by_name[arm["action"]] for opponent, arm in best.items()}
+        opponent = arm["opponent"] - 1
+        known = best.setdefault(opponent, None)
+        if arm["count"] > 0 and (known is None or arm["q"] > known["q"]):
+            best[opponent] = arm
+    return {
+        opponent: flight(actions) if arm is None else by_name[arm["action"]] for opponent, arm in best.items()
+    }
 
 
 def save(path: Path, swarm: int, robots: Sequence[Sequence[Mapping[str, Any]]]) -> None:
@@ -102,13 +119,29 @@ def save(path: Path, swarm: int, robots: Sequence[Sequence[Mapping[str, Any]]]) 
     OSError
         If it cannot be written; then nothing is.
     """
-    # JSON has no NaN, the Q of an arm that was never tried.
-    known = [[{**arm, "q": arm["q"] if arm["count"] > 0 else None} for arm in arms] for arms in robots]
+    known = [[_without_nan(arm) for arm in arms] for arms in robots]
     text = json.dumps({"format": _FORMAT, "swarm": swarm, "robots": known}, indent=1)
     with TemporaryDirectory(dir=path.parent, prefix=".unfinished-") as unfinished:
         file = Path(unfinished, path.name)
         file.write_text(text, encoding="utf-8")
         file.replace(path)
+
+
+def _without_nan(arm: Mapping[str, Any]) -> dict[str, Any]:
+    # JSON has no NaN, the Q of an arm that was never tried.
+    return {**arm, "q": arm["q"] if arm["count"] > 0 else None}
+
+
+def check_arms(arms: Sequence[Mapping[str, Any]]) -> None:
+    """Check that arms can be saved.
+
+    Raises
+    ------
+    InputError, KeyError, TypeError
+        If they are not as those of `agents.learner.Learner.snapshot`.
+    """
+    for arm in arms:
+        _SavedArm(**_without_nan(arm))
 
 
 def load(path: Path) -> dict[str, Any]:

@@ -4,10 +4,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from agents.actions import AWAY, Action
 from agents.bandit import Bandit
-from agents.calls import build
 from agents.errors import InputError
-from agents.rewards import REWARDS, Reward
-from agents.selection import RULES
+from agents.rewards import Reward, make_reward
+from agents.selection import make_rule
 from agents.streams import Purpose
 
 if TYPE_CHECKING:
@@ -24,7 +23,7 @@ class Learner:
     about : {'inter', 'intra', 'both'}
         Whether it learns about other swarms, its own, or both.
     reward, rule : str
-        A reward of `agents.rewards.REWARDS` and a rule of `agents.selection.RULES`, with their arguments.
+        As in `agents.rewards.make_reward` and `agents.selection.make_rule`.
     otherwise : str
         Name of the action against the swarms that it does not learn about; by default the first that
         drives away.
@@ -61,11 +60,11 @@ class Learner:
             if otherwise not in by_name:
                 raise InputError("otherwise", otherwise, f"must be one of {', '.join(by_name)}")
             self._otherwise = by_name[otherwise]
-        self._reward = build("reward", reward, REWARDS)
+        self._reward = make_reward(reward)
         for opponent in sorted(self._reward.opponents()):
             if not 1 <= opponent <= setting.swarms:
                 raise InputError("reward", reward, f"names swarm {opponent}, the game has {setting.swarms}")
-        self._rule = build("rule", rule, RULES)
+        self._rule = make_rule(rule, len(self.actions))
         self._factor = self._rule.factor
         self.bandits = {
             swarm: Bandit(len(self.actions))

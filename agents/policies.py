@@ -1,18 +1,21 @@
 """Policies: which action against which swarm (specification, section 2.4).
 
 A policy is asked once for each conflict, with what the robot knows of the other: its swarm-ID. One that
-learns is also told how each conflict ended.
+learns is also told how each conflict ended. A policy of a user's own is a class with the methods of `Policy`,
+and those of `LearningPolicy` if it learns; nothing has to be derived from.
 """
 
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, Final, NamedTuple, Protocol
 
+from agents import own
 from agents.actions import AWAY, TOWARDS, Action
 from agents.calls import parse_call, require_known, split_outside
 from agents.errors import InputError
 from agents.learned import LearnedPolicy
 from agents.learner import Learner
+from agents.outside import blaming, is_reference
 from agents.streams import Purpose, Streams
 
 
@@ -39,12 +42,58 @@ class Setting(NamedTuple):
     streams: Streams
     place: int = 0
 
+    def first(self, direction: int) -> Action:
+        """Return the first action of a direction, `agents.actions.AWAY` or `TOWARDS`.
+
+        Raises
+        ------
+        InputError
+            If the game has none.
+        """
+        for action in self.actions:
+            if action.direction == direction:
+                return action
+        names = [action.name for action in self.actions]
+        raise InputError("actions", names, f"must have one of direction {direction:+d} for this policy")
+
 
 class Policy(Protocol):
-    """What a robot needs to be told at a conflict."""
+    """What decides at a conflict.
+
+    A class of a user's own is called with a `Setting` and the keyword arguments of the text that names it.
+    """
 
     def choose(self, opponent: int) -> Action:
         """Return the action to take against a robot of swarm `opponent` (counted from 0)."""
+        ...
+
+
+class LearningPolicy(Policy, Protocol):
+    """A policy that is told how its conflicts ended, until the measured game begins.
+
+    If it also has a method ``snapshot``, which returns what `Learner.snapshot` does, then what it learned is
+    recorded and can be saved.
+    """
+
+    def learn(self, t_a: float, t_p: float, n_active: int) -> tuple[float, float]:
+        """Close the conflict chosen for last.
+
+        Parameters
+        ----------
+        t_a, t_p : float
+            T(a) and T(p) (s).
+        n_active : int
+            n'_i, sensors that were active when it began.
+
+        Returns
+        -------
+        reward, value : float
+            What the conflict was worth (s) and Q of the action after it, for the record; NaN for none.
+        """
+        ...
+
+    def freeze(self) -> None:
+        """Stop learning: from now on choose what was learned, without exploration."""
         ...
 
 
@@ -85,8 +134,8 @@ class RandomPolicy:
 
     def __init__(self, setting: Setting) -> None:
         self.swarm = setting.swarm
-        self._within = _first(setting.actions, AWAY)
-        self._against = (self._within, _first(setting.actions, TOWARDS))
+        self._within = setting.first(AWAY)
+        self._against = (self._within, setting.first(TOWARDS))
         self._streams = setting.streams
 
     def choose(self, opponent: int) -> Action:
@@ -99,16 +148,8 @@ class RandomPolicy:
         return f"RandomPolicy(swarm={self.swarm})"
 
 
-def _first(actions: Sequence[Action], direction: int) -> Action:
-    for action in actions:
-        if action.direction == direction:
-            return action
-    names = [action.name for action in actions]
-    raise InputError("actions", names, f"must have one of direction {direction:+d} for this policy")
-
-
 def _fixed(setting: Setting, within: int, against: int) -> FixedPolicy:
-    return FixedPolicy(setting.swarm, _first(setting.actions, within), _first(setting.actions, against))
+    return FixedPolicy(setting.swarm, setting.first(within), setting.first(against))
 
 
 class Kind(NamedTuple):
@@ -149,8 +190,9 @@ def make_policy(text: str, setting: Setting) -> Policy:
     Parameters
     ----------
     text : str
-        One of `POLICIES`, with arguments where it takes any; or the name of an action, which is then
-        always taken.
+        One of `POLICIES`, with arguments where it takes any; the name of an action, which is then always
+        taken; or a class of a user's own as ``path/to/my_file.py:MyPolicy``, with its arguments
+        (`agents.outside`).
     setting : Setting
         What it is built for.
 
@@ -165,15 +207,22 @@ def make_policy(text: str, setting: Setting) -> Policy:
     call = parse_call("policy", text)
     if call.name in (action.name for action in setting.actions):
         raise InputError("policy", text, "an action takes no arguments")
-    if call.name not in POLICIES:
+    if is_reference(call.name):
+        kind = Kind(own.policy_class(call))
+    elif call.name in POLICIES:
+        kind = POLICIES[call.name]
+        require_known("policy", call, kind.arguments)
+    else:
         known = ", ".join([*POLICIES, *_ALIASES, *(action.name for action in setting.actions)])
-        raise InputError("policy", call.name, f"must be one of {known}, or several joined by '+'")
-    kind = POLICIES[call.name]
-    require_known("policy", call, kind.arguments)
-    try:
-        return kind.make(setting, **call.arguments)
-    except InputError as error:
-        raise InputError(f"policy.{error.field}", error.value, error.allowed) from None
+        raise InputError(
+            *("policy", call.name),
+            f"must be one of {known}, or several joined by '+', or a class as my_file.py:MyPolicy",
+        )
+    with blaming("policy", call.name, "its constructor"):
+        try:
+            return kind.make(setting, **call.arguments)
+        except InputError as error:
+            raise InputError(f"policy.{error.field}", error.value, error.allowed) from None
 
 
 def deal(policy: str, size: int) -> list[str]:
@@ -208,5 +257,6 @@ def parts(policy: str) -> list[str]:
 
 
 def describe(policy: Policy) -> list[dict[str, Any]]:
-    """Return what a policy has learned, as `Learner.snapshot` does; nothing if it does not learn."""
-    return policy.snapshot() if isinstance(policy, Learner) else []
+    """Return what a policy has learned, as `Learner.snapshot` does; nothing if it has no such method."""
+    snapshot: Callable[[], list[dict[str, Any]]] | None = getattr(policy, "snapshot", None)
+    return [] if snapshot is None else snapshot()

@@ -1,14 +1,20 @@
 """Rewards: what a conflict was worth, by what the robot itself sensed (specification, section 1.4).
 
-A reward is a frozen description with a method; a new one is a subclass of `Reward` under a name in `REWARDS`.
+A reward is a frozen description with a method; a new one is a subclass of `Reward`, under a name in `REWARDS`
+or in a file of a user's own.
 """
 
+import math
 from abc import ABC, abstractmethod
+from itertools import product
 from typing import Annotated, Final
 
 from pydantic import Discriminator, Field, Tag
 
 from agents.body import SENSORS
+from agents.calls import build, parse_call
+from agents.errors import InputError
+from agents.outside import blaming, is_reference
 from agents.theory.estimates import estimated_wlu, program_weight_of_equals, sigma
 from agents.theory.times import intra_utility
 from agents.validation import Checked
@@ -123,3 +129,27 @@ REWARDS: Final[dict[str, type[Reward]]] = {
     "single-swarm": SingleSwarmWLU,
 }
 """Every reward by its name."""
+
+
+def make_reward(text: str) -> Reward:
+    """Build the reward that a text describes, and try one from outside.
+
+    Parameters
+    ----------
+    text : str
+        One of `REWARDS`, or a subclass of `Reward` as ``path/to/my_file.py:MyReward``, with arguments.
+
+    Raises
+    ------
+    InputError
+        If there is no such reward, or it gives something else than a finite float.
+    """
+    reward = build("reward", text, REWARDS, Reward)
+    name = parse_call("reward", text).name
+    if is_reference(name):
+        for t_p, direction, inter in product((0.0, 6.0), (-1, 1), (False, True)):
+            with blaming("reward", name, "of(…)"):
+                earned = reward.of(1.8, t_p, 3, direction, inter, 1)
+            if not isinstance(earned, float | int) or not math.isfinite(earned):
+                raise InputError("reward", name, f"of(…) must return a finite float, not {earned!r}")
+    return reward

@@ -1,16 +1,22 @@
 """Selection rules: which arm to pull while learning (specification, section 1.5).
 
-A rule is a frozen description with a method; a new one is a subclass of `Rule` under a name in `RULES`.
+A rule is a frozen description with a method; a new one is a subclass of `Rule`, under a name in `RULES` or in
+a file of a user's own.
 """
 
 import math
 from abc import ABC, abstractmethod
+from numbers import Integral
 from typing import Final
 
 from numpy.random import Generator
 from pydantic import Field
 
 from agents.bandit import Bandit
+from agents.calls import build, parse_call
+from agents.errors import InputError
+from agents.outside import blaming, is_reference
+from agents.streams import Purpose, stream
 from agents.validation import Checked
 
 FORGOTTEN: Final = 1e-12
@@ -42,7 +48,7 @@ class Rule(Checked, ABC):
 
     @abstractmethod
     def prefer(self, bandit: Bandit, draws: Generator) -> int:
-        """Return the arm to pull when all were tried."""
+        """Return the arm to pull, from 0, when all were tried."""
 
 
 class UCB(Rule):
@@ -131,6 +137,39 @@ RULES: Final[dict[str, type[Rule]]] = {
     "uniform-random": UniformRandom,
 }
 """Every selection rule by its name."""
+
+
+def make_rule(text: str, arms: int) -> Rule:
+    """Build the rule that a text describes, and try one from outside.
+
+    Parameters
+    ----------
+    text : str
+        One of `RULES`, or a subclass of `Rule` as ``path/to/my_file.py:MyRule``, with arguments.
+    arms : int
+        Number of actions that it is to choose from.
+
+    Raises
+    ------
+    InputError
+        If there is no such rule, or it chooses what is no arm.
+    """
+    rule = build("rule", text, RULES, Rule)
+    name = parse_call("rule", text).name
+    if is_reference(name):
+        bandit, draws = Bandit(arms), stream(0, 0, Purpose.EXPLORE)
+        with blaming("rule", name, "factor"):
+            factor = rule.factor
+        if not isinstance(factor, float | int) or not 0 < factor <= 1:
+            raise InputError("rule", name, f"factor must be a number above 0 and at most 1, not {factor!r}")
+        for _ in range(2 * arms):
+            with blaming("rule", name, "choose(…)"):
+                arm = rule.choose(bandit, draws)
+            if not isinstance(arm, Integral) or not 0 <= arm < arms:
+                raise InputError("rule", name, f"prefer(…) must return 0 to {arms - 1}, not {arm!r}")
+            bandit.choices += 1
+            bandit.update(arm, 1.0, 2.0, factor)
+    return rule
 
 
 def _greatest(values: list[float], draws: Generator) -> int:

@@ -2,15 +2,12 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from textwrap import fill
 from typing import Any
 
 import pandas as pd
-import seaborn as sns
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from agents.errors import InputError
 from analysis.contribution import (
     MEASURES,
     QUANTITIES,
@@ -21,8 +18,8 @@ from analysis.contribution import (
     rank_correlations,
     read,
 )
-from analysis.drawing import SWARM_FORMS, Form
-from analysis.figures import DOTS_PER_INCH
+from analysis.drawing import DETAILED, Form, brief, legend_below, sheet
+from analysis.pictures import save
 
 
 def scatter(rows: pd.DataFrame, title: str = "") -> Figure:
@@ -45,26 +42,19 @@ def scatter(rows: pd.DataFrame, title: str = "") -> Figure:
     name = f"{first['scenario']}: {title}" if title else first["scenario"]
     heading = [name, first["condition"], f"N = {first['n']}", f"robots absent {absent}"]
     robots, correlations = means(rows), rank_correlations(rows)
-    with (
-        sns.axes_style("whitegrid", rc={"grid.color": "0.9"}),
-        sns.plotting_context("notebook", font_scale=0.9),
-    ):
-        figure = Figure(figsize=(5.5 * len(measures) + 1, 5.5), layout="constrained")
-        figure.suptitle(fill(", ".join(filter(None, heading)), width=95, break_on_hyphens=False))
+    with sheet(", ".join(filter(None, heading)), 5.5 * len(measures) + 1, 5.5) as figure:
         panels = figure.subplots(1, len(measures), squeeze=False)[0]
         for axes, measure in zip(panels, measures, strict=True):
             axes.axhline(0, color="0.4", linewidth=1)
             for swarm in sorted(set(rows["swarm"])):
-                form = SWARM_FORMS[(swarm - 1) % len(SWARM_FORMS)]
+                form = DETAILED.of_swarm(swarm)
                 of_swarm = robots[(robots["swarm"] == swarm) & (robots["robot"] >= 0)]
                 _draw_swarm(axes, rows[rows["swarm"] == swarm], of_swarm, measure, form)
             axes.set_title(_title(correlations[correlations["measure"] == measure]), fontsize="small")
             axes.set_xlabel("reward that the robot computes in a game (s)")
             axes.set_ylabel(f"change of its swarm's SUD by the robot ({MEASURES[measure]})")
-        handles, labels = panels[0].get_legend_handles_labels()
         note = f"means of {seeds} seeds, bars: their 95 % intervals, points: single games"
-        note = note if seeds > 1 else "one seed"
-        figure.legend(handles, labels, title=note, loc="outside lower center", ncols=3)
+        legend_below(figure, note if seeds > 1 else "one seed")
     return figure
 
 
@@ -76,7 +66,7 @@ def _draw_swarm(axes: Axes, games: pd.DataFrame, robots: pd.DataFrame, measure: 
         robots[measure],
         xerr=_reach(robots, "reward"),
         yerr=_reach(robots, measure),
-        label=f"S{robots['swarm'].iloc[0]}: {_brief(games['policy'])}",
+        label=f"S{robots['swarm'].iloc[0]}: {', '.join(dict.fromkeys(map(brief, games['policy'])))}",
         color=form.colour,
         linestyle="none",
         marker=form.marker,
@@ -87,11 +77,6 @@ def _draw_swarm(axes: Axes, games: pd.DataFrame, robots: pd.DataFrame, measure: 
 
 def _reach(table: pd.DataFrame, quantity: str) -> pd.Series:
     return table[f"{quantity}_high"] - table[quantity]
-
-
-def _brief(policies: pd.Series) -> str:
-    """Return the policies of a swarm without their arguments, which are too long for a legend."""
-    return "+".join(dict.fromkeys(policy.partition("(")[0] for policy in policies))
 
 
 def _title(correlations: pd.DataFrame) -> str:
@@ -130,16 +115,7 @@ def draw(directory: Path, title: str = "", **question: object) -> Path:
     """
     rows = of_question(read(directory), **question)
     path = directory / "figures" / f"contribution-{rows['scenario'].iloc[0]}.png"
-    unfinished = path.with_name(f".unfinished-{path.name}")
-    try:
-        path.parent.mkdir(exist_ok=True)
-        try:
-            scatter(rows, title).savefig(unfinished, format="png", dpi=DOTS_PER_INCH)
-            unfinished.replace(path)
-        finally:
-            unfinished.unlink(missing_ok=True)
-    except OSError as error:
-        raise InputError("figures", str(path), "must be a place that can be written") from error
+    save(scatter(rows, title), path)
     return path
 
 

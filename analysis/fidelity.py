@@ -8,6 +8,7 @@ import pandas as pd
 from scipy import stats
 
 from agents.errors import InputError
+from analysis.printed import PrintedTable
 from analysis.published import argos_fixed_policies
 
 SHARE_TOLERANCE = 0.06
@@ -84,38 +85,44 @@ def against_argos(runs: pd.DataFrame) -> pd.DataFrame:
     ).reset_index()
 
 
-def markdown_table(frame: pd.DataFrame) -> str:
-    """Write what `against_argos` returns as a Markdown table, a line for each row."""
-    head = (
-        "| scenario | N | swarm | pucks | ARGoS | difference (95 % interval) | relative | fits "
-        "| time in conflict | ARGoS | difference | fits |"
-    )
-    lines = [head, "|---|--:|---|--:|--:|---|--:|---|--:|--:|--:|---|"]
+def printed(frame: pd.DataFrame) -> PrintedTable:
+    """Print what `against_argos` returns, a line for each row."""
+    header = [
+        *("scenario", "N", "swarm", "pucks", "ARGoS", "difference (95 % interval)", "relative", "fits"),
+        *("time in conflict", "ARGoS", "difference", "fits"),
+    ]
+    rows = []
     for row in frame.to_dict("records"):
         relative = "–" if pd.isna(row["score_relative"]) else f"{100 * row['score_relative']:+.0f} %"
         interval = (
             "" if pd.isna(row["score_low"]) else f" ({row['score_low']:+.1f} … {row['score_high']:+.1f})"
         )
-        cells = (
-            row["scenario"],
-            row["n"],
-            f"S{row['swarm']}",
-            f"{row['score_ours']:.1f}",
-            f"{row['score_theirs']:.1f}",
-            f"{row['score_difference']:+.1f}{interval}",
-            relative,
-            _verdict(row["score_fits"]),
-            f"{row['share_ours']:.3f}",
-            f"{row['share_theirs']:.3f}",
-            f"{row['share_difference']:+.3f}",
-            _verdict(row["share_fits"]),
+        rows.append(
+            [
+                str(row["scenario"]),
+                str(row["n"]),
+                f"S{row['swarm']}",
+                f"{row['score_ours']:.1f}",
+                f"{row['score_theirs']:.1f}",
+                f"{row['score_difference']:+.1f}{interval}",
+                relative,
+                _verdict(row["score_fits"]),
+                f"{row['share_ours']:.3f}",
+                f"{row['share_theirs']:.3f}",
+                f"{row['share_difference']:+.3f}",
+                _verdict(row["share_fits"]),
+            ]
         )
-        lines.append(f"| {' | '.join(map(str, cells))} |")
-    return "\n".join(lines) + "\n"
+    return PrintedTable(header, rows, "")
+
+
+def markdown_table(frame: pd.DataFrame) -> str:
+    """Write what `against_argos` returns as a Markdown table, a line for each row; misfits are bold."""
+    return printed(frame).to_markdown().replace("| no |", "| **no** |")
 
 
 def _verdict(fits: bool) -> str:
-    return "yes" if fits else "**no**"
+    return "yes" if fits else "no"
 
 
 def _own_games(runs: pd.DataFrame) -> pd.DataFrame:

@@ -1,11 +1,9 @@
-"""The first figure of each scenario, from the rows of `runs.parquet`.
+"""Figures of scenarios over the number of robots, from the rows of `runs.parquet` and `policies.parquet`.
 
 Figures are plain `matplotlib.figure.Figure` objects: no window opens and no global setting changes.
 """
 
-import os
-from collections.abc import Callable, Mapping, Sequence
-from io import BytesIO
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pandas as pd
@@ -13,13 +11,25 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from agents.errors import InputError
-from analysis.drawing import curves_of, draw_curves, page, scale_from_zero
+from analysis.drawing import (
+    DETAILED,
+    Form,
+    Look,
+    curves_of,
+    draw_curves,
+    draw_line,
+    form_of_condition,
+    legend_below,
+    page,
+    scale_from_zero,
+    sheet,
+)
+from analysis.pictures import save
 from analysis.results import read_runs
+from analysis.tables import named_columns
 
-DOTS_PER_INCH = 150
 
-
-def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "") -> Figure:
+def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "", look: Look = DETAILED) -> Figure:
     """Draw the pucks deposited in the measured game over the number of robots, for each swarm.
 
     Parameters
@@ -30,6 +40,8 @@ def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "") -> Figure:
         Id of the scenario to draw; its conditions, if several, are drawn as a curve each.
     title : str
         What the scenario is, printed after its id.
+    look : Look
+        Colours, and whether intervals and seeds are drawn.
 
     Returns
     -------
@@ -41,20 +53,20 @@ def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "") -> Figure:
         `runs` has no row of the scenario.
     """
     rows = _of(runs, scenario)
-    with page(rows, _heading(scenario, title)) as figure:
+    with page(rows, _heading(scenario, title), look=look) as figure:
         axes = figure.subplots()
-        draw_curves(axes, curves_of(rows), "pucks")
+        draw_curves(axes, curves_of(rows, look), "pucks", look)
         axes.set_ylabel("pucks deposited by the swarm")
         scale_from_zero(axes, rows["pucks"])
     return figure
 
 
-def time_shares(runs: pd.DataFrame, scenario: str, title: str = "") -> Figure:
+def time_shares(runs: pd.DataFrame, scenario: str, title: str = "", look: Look = DETAILED) -> Figure:
     """Draw the share of time in conflict, T(a) / (T(a) + T(p)), over the number of robots (Fig. 6.3).
 
     Parameters
     ----------
-    runs, scenario, title
+    runs, scenario, title, look
         As for `pucks_over_n`.
 
     Returns
@@ -67,15 +79,11 @@ def time_shares(runs: pd.DataFrame, scenario: str, title: str = "") -> Figure:
     InputError
         `runs` has no row of the scenario.
     """
-    rows = _of(runs, scenario)
-    in_conflict = rows["t_a_intra"] + rows["t_a_inter"]
-    lived = in_conflict + rows["t_p"]
-    times = {"total": in_conflict, "inter-swarm": rows["t_a_inter"], "intra-swarm": rows["t_a_intra"]}
-    rows = rows.assign(**{kind: time / lived for kind, time in times.items()})
-    with page(rows, _heading(scenario, title), width=11.0) as figure:
-        panels: Sequence[Axes] = figure.subplots(1, len(times), sharey=True)
-        for axes, kind in zip(panels, times, strict=True):
-            draw_curves(axes, curves_of(rows), kind)
+    rows = with_time_shares(_of(runs, scenario))
+    with page(rows, _heading(scenario, title), width=11.0, look=look) as figure:
+        panels: Sequence[Axes] = figure.subplots(1, len(TIME_SHARES), sharey=True)
+        for axes, kind in zip(panels, TIME_SHARES, strict=True):
+            draw_curves(axes, curves_of(rows, look), kind, look)
             axes.set_title(kind)
             axes.set_ylabel("share of time, T(a) / (T(a) + T(p))")
             axes.label_outer()
@@ -83,12 +91,26 @@ def time_shares(runs: pd.DataFrame, scenario: str, title: str = "") -> Figure:
     return figure
 
 
-def sud_over_n(runs: pd.DataFrame, scenario: str, title: str = "", swarm: int = 2) -> Figure:
+TIME_SHARES = ("total", "inter-swarm", "intra-swarm")
+"""Kinds of conflict that a swarm's share of time is given for."""
+
+
+def with_time_shares(rows: pd.DataFrame) -> pd.DataFrame:
+    """Add the shares of time in conflict to rows of `runs.parquet`: a column for each of `TIME_SHARES`."""
+    in_conflict = rows["t_a_intra"] + rows["t_a_inter"]
+    times = (in_conflict, rows["t_a_inter"], rows["t_a_intra"])
+    lived = in_conflict + rows["t_p"]
+    return rows.assign(**{kind: time / lived for kind, time in zip(TIME_SHARES, times, strict=True)})
+
+
+def sud_over_n(
+    runs: pd.DataFrame, scenario: str, title: str = "", look: Look = DETAILED, swarm: int = 2
+) -> Figure:
     """Draw the Swarm Utility Difference (Eq. 3.7) of one swarm over the number of robots.
 
     Parameters
     ----------
-    runs, scenario, title
+    runs, scenario, title, look
         As for `pucks_over_n`.
     swarm : int
         Number of the swarm, 1 … K; the source shows S2.
@@ -107,11 +129,52 @@ def sud_over_n(runs: pd.DataFrame, scenario: str, title: str = "", swarm: int = 
     if swarm not in swarms:
         raise InputError("swarm", swarm, f"must be one of {', '.join(map(str, swarms))} in {scenario}")
     rows = rows[rows["swarm"] == swarm]
-    with page(rows, _heading(scenario, title)) as figure:
+    with page(rows, _heading(scenario, title), look=look) as figure:
         axes = figure.subplots()
         axes.axhline(0, color="0.4", linewidth=1)
-        draw_curves(axes, curves_of(rows), "sud")
+        draw_curves(axes, curves_of(rows, look), "sud", look)
         axes.set_ylabel(f"SUD of S{swarm} (pucks)")
+    return figure
+
+
+def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[str] = ()) -> Figure:
+    """Draw what robots learned over the number of robots, with what was published as crosses.
+
+    Parameters
+    ----------
+    cells : pandas.DataFrame
+        As `analysis.tables.learned` returns them.
+    title : str
+        What they are of.
+    conditions : sequence of str
+        Conditions of another figure, in their order there, whose colours theirs are.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A curve for each scenario, condition, learning swarm and opponent with its 95 % interval; where the
+        source gives numbers, a cross of the same colour on a dotted line.
+    """
+    with sheet(title) as figure:
+        axes = figure.subplots()
+        several = cells.groupby("condition")["opponent"].nunique().max() > 1
+        for place, (name, column) in enumerate(named_columns(cells)):
+            condition, opponent = column["condition"].iloc[0], column["opponent"].iloc[0]
+            index = list(conditions).index(condition) if len(conditions) > 1 else place
+            own = several and len(conditions) > 1
+            form = form_of_condition(index, DETAILED.of_swarm(opponent) if own else None)
+            axes.fill_between(column["n"], column["low"], column["high"], color=form.colour, alpha=0.2, lw=0)
+            draw_line(axes, column["n"], column["measured"], form, name)
+            if column["published"].notna().any():
+                published = Form(form.colour, ":", "x")
+                draw_line(axes, column["n"], column["published"], published, f"{name}, published")
+        axes.set_ylim(-3, 103)
+        axes.set_xticks(sorted(set(cells["n"])))
+        axes.set_xlabel("number of robots in all, N")
+        learned = set(cells["learned"])
+        what = "to attack" if learned == {"attack"} else "flight within" if len(learned) == 1 else "so"
+        axes.set_ylabel(f"robots that learned {what} (%)")
+        legend_below(figure, "learned, measured with its 95 % interval")
     return figure
 
 
@@ -120,10 +183,35 @@ _OF_SUD = (
     *("fig-6.10a", "fig-6.10b", "fig-6.12", "fig-6.14"),
     *("fig-7.4", "fig-7.6", "fig-7.8", "fig-7.10", "fig-7.11", "fig-7.19"),
 )
-_SHOWN_BY: Mapping[str, Callable[[pd.DataFrame, str, str], Figure]] = {
-    "fig-6.3": time_shares,
-    **dict.fromkeys(_OF_SUD, sud_over_n),
-}
+_OF_TIME = ("fig-6.3",)
+
+
+def quantities(scenario: str) -> tuple[str, ...]:
+    """Return what the figure of a scenario shows: `TIME_SHARES`, ``sud`` (of S2) or ``pucks``."""
+    if scenario in _OF_SUD:
+        return ("sud",)
+    return TIME_SHARES if scenario in _OF_TIME else ("pucks",)
+
+
+def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", look: Look = DETAILED) -> Figure:
+    """Draw what the source shows of a scenario: pucks, SUD of S2 or shares of time over the number of robots.
+
+    Parameters
+    ----------
+    runs, scenario, title, look
+        As for `pucks_over_n`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        `runs` has no row of the scenario.
+    """
+    shown = {("sud",): sud_over_n, TIME_SHARES: time_shares}.get(quantities(scenario), pucks_over_n)
+    return shown(runs, scenario, title, look)
 
 
 def draw(results_dir: Path, scenario_ids: Sequence[str], titles: Mapping[str, str]) -> list[Path]:
@@ -154,9 +242,8 @@ def draw(results_dir: Path, scenario_ids: Sequence[str], titles: Mapping[str, st
     for scenario in scenario_ids:
         if scenario not in present:
             continue
-        figure = _SHOWN_BY.get(scenario, pucks_over_n)(runs, scenario, titles.get(scenario, ""))
         path = results_dir / "figures" / f"{scenario}.png"
-        _write(figure, path)
+        save(figure_of(runs, scenario, titles.get(scenario, "")), path)
         paths.append(path)
     return paths
 
@@ -170,18 +257,3 @@ def _of(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
 
 def _heading(scenario: str, title: str) -> str:
     return f"{scenario}: {title}" if title else scenario
-
-
-def _write(figure: Figure, path: Path) -> None:
-    picture = BytesIO()
-    figure.savefig(picture, format="png", dpi=DOTS_PER_INCH)
-    part = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        path.parent.mkdir(exist_ok=True)
-        try:
-            part.write_bytes(picture.getvalue())
-            part.replace(path)
-        finally:
-            part.unlink(missing_ok=True)
-    except OSError as error:
-        raise InputError("figures", str(path), "must be a place that can be written") from error

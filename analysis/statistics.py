@@ -120,7 +120,7 @@ def bootstrap_interval(
         resampled = chosen.reshape(-1, chosen.shape[-1])
         return statistic(values[resampled]).reshape(chosen.shape[:-1])
 
-    level = _expanded(confidence, len(values))
+    level = expanded(confidence, len(values))
     with warnings.catch_warnings(), np.errstate(invalid="ignore"):
         # Where BCa has no answer; what is done about it stands below.
         warnings.simplefilter("ignore", stats.DegenerateDataWarning)
@@ -275,7 +275,11 @@ def more_seeds(differences: ArrayLike, power: float = 0.8, confidence: float = C
     return more if len(values) + more < _MOST_SEEDS else None
 
 
-def _expanded(confidence: float, seeds: int) -> float:
+def expanded(confidence: float, seeds: int) -> float:
+    """Return the level at which percentiles of the resampled mean of a few seeds keep a confidence.
+
+    Bootstrap intervals of few seeds are too narrow (Hesterberg 2015, "expanded percentile").
+    """
     quantile = stats.t.ppf((1 + confidence) / 2, seeds - 1)
     return float(2 * stats.norm.cdf(math.sqrt(seeds / (seeds - 1)) * quantile) - 1)
 

@@ -6,12 +6,12 @@ and 100 %. A single seed has no interval.
 """
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
 
 import pandas as pd
 from scipy import stats
 
 from agents.errors import InputError
+from analysis.printed import PrintedTable
 from analysis.published import learned_percentages
 
 CONFIDENCE = 0.95
@@ -89,15 +89,6 @@ def mean_absolute_error(cells: pd.DataFrame) -> float:
     return float(cells["error"].abs().mean())
 
 
-@dataclass(frozen=True)
-class PrintedTable:
-    """A table ready to be printed: its header, its rows of as many cells, and what stands below."""
-
-    header: list[str]
-    rows: list[list[str]]
-    caption: str
-
-
 def printed(cells: pd.DataFrame) -> PrintedTable:
     """Put cells into the form of the source's tables: a row for each N, a column for each curve.
 
@@ -115,7 +106,7 @@ def printed(cells: pd.DataFrame) -> PrintedTable:
     """
     densities = sorted(set(cells["n"]))
     header, columns, errors = ["N"], [[str(n) for n in densities]], []
-    for name, column in _named_columns(cells):
+    for name, column in named_columns(cells):
         by_density = column.set_index("n").reindex(densities)
         if column["published"].notna().any():
             header.append(f"{name}\npublished")
@@ -126,13 +117,23 @@ def printed(cells: pd.DataFrame) -> PrintedTable:
     return PrintedTable(header, [list(row) for row in zip(*columns, strict=True)], _caption(cells, errors))
 
 
-def _named_columns(cells: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
-    """Return the columns, each under what tells it from the others."""
+def named_columns(cells: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    """Return the columns of a table, each under what tells it from the others.
+
+    Parameters
+    ----------
+    cells : pandas.DataFrame
+        As `learned` returns them.
+    """
     telling = [part for part in ("scenario", "condition", "learned") if cells[part].nunique() > 1]
+    opponents = cells.groupby(["scenario", "condition", "swarm", "learned"])["opponent"].nunique()
     columns = []
     for _, column in cells.groupby(_COLUMN, sort=False):
         first = column.iloc[0]
-        columns.append((", ".join(str(first[part]) for part in telling or ["learned"]), column))
+        words = [str(first[part]) for part in telling or ["learned"]]
+        if opponents.max() > 1:  # of three swarms
+            words.append(f"S{first['opponent']}")
+        columns.append((", ".join(words), column))
     return columns
 
 

@@ -15,6 +15,7 @@ from pydantic import (
 from agents.actions import Action
 from agents.body import BODIES, Body
 from agents.errors import InputError
+from agents.own import rehearse
 from agents.policies import Setting, make_policy, parts
 from agents.streams import Streams
 from agents.validation import Checked
@@ -120,7 +121,7 @@ class Game(Checked):
         for k, swarm in enumerate(self.swarms):
             setting = Setting(k, len(self.swarms), self.action_set, Streams(0, 0))
             for text in parts(swarm.policy):
-                make_policy(text, setting)
+                rehearse(text, make_policy(text, setting), setting)
         fastest = max(max(swarm.drive, swarm.drive_action) for swarm in self.swarms)
         step = self.parameters.period * self.body_preset.top_speed * fastest
         if step > LONGEST_STEP * self.body_preset.radius:

@@ -9,8 +9,7 @@ from mesa import DataCollector
 from agents.actions import TOWARDS
 from agents.errors import InputError
 from agents.habits import Conflict
-from agents.learned import save
-from agents.learner import Learner
+from agents.learned import best_actions, save
 from agents.policies import describe
 from agents.theory.swarms import swarm_utility_difference
 
@@ -166,9 +165,9 @@ def policy_rows(model: "GameModel") -> list[dict[str, Any]]:
     """
     rows = []
     for k, members in enumerate(model.members):
-        learners = [robot.policy for robot in members if isinstance(robot.policy, Learner)]
-        for opponent in sorted({m for learner in learners for m in learner.bandits}):
-            learned = [learner.learned(opponent) for learner in learners if opponent in learner.bandits]
+        of_robots = [best_actions(describe(robot.policy), model.game.action_set) for robot in members]
+        for opponent in sorted({m for actions in of_robots for m in actions}):
+            learned = [actions[opponent] for actions in of_robots if opponent in actions]
             shares = {
                 a.name: sum(b.name == a.name for b in learned) / len(learned) for a in model.game.action_set
             }

@@ -30,8 +30,8 @@ from scenarios.calibration_games import (
     texts,
     to_place,
     to_point,
-    write_json,
 )
+from scenarios.files import write_json
 
 SPREAD: Final = 0.15
 """Standard deviation of the first generation, as a part of the range searched."""

@@ -15,6 +15,7 @@ from agents.errors import InputError
 from agents.selection import UCB
 from model.game import Game, Swarm
 from model.parameters import PRESETS, parse_parameters
+from scenarios.files import write_json
 from scenarios.runs import Run, digest
 
 Floats = NDArray[np.float64]
@@ -155,16 +156,3 @@ def _read(path: Path, setup: dict[str, Any]) -> dict[str, float]:
     if found != setup:
         raise InputError("out", str(path.parent), "holds a fit of another setup: name another, or --fresh")
     return shares
-
-
-def write_json(path: Path, content: object) -> None:
-    """Write a file of JSON, whole or not at all.
-
-    Raises
-    ------
-    OSError
-        If that fails; then the file is as it was.
-    """
-    unfinished = path.with_name(f".unfinished-{path.name}")
-    unfinished.write_text(json.dumps(content, indent=1) + "\n")
-    unfinished.replace(path)

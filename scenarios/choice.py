@@ -2,28 +2,39 @@
 
 import difflib
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 from agents.errors import InputError
 from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.description import Scenario
+from scenarios.files import read_scenarios
 
 
 def chosen(ids: Iterable[str]) -> list[Scenario]:
     """Return the scenarios of these ids, each once; the id of a table stands for all that it is made of.
 
+    A word that ends in ``.toml`` is the path of a file with scenarios.
+
     Raises
     ------
     InputError
-        If there is no such id.
+        If there is no such id or file, or two scenarios of one id differ.
     """
-    names: list[str] = []
+    found: dict[str, Scenario] = {}
     for name in ids:
-        if name not in CATALOGUE and name not in TABLES:
-            near = difflib.get_close_matches(name, [*CATALOGUE, *TABLES], cutoff=0.5)
-            hint = f"did you mean {' or '.join(near)}?" if near else "see `kswarms list`"
-            raise InputError("id", name, f"must be a scenario or table of the list; {hint}")
-        names += TABLES[name].scenarios if name in TABLES else [name]
-    return [CATALOGUE[name] for name in dict.fromkeys(names)]
+        scenarios = read_scenarios(Path(name)) if name.endswith(".toml") else _of_catalogue(name)
+        for scenario in scenarios:
+            if found.setdefault(scenario.id, scenario) != scenario:
+                raise InputError("id", scenario.id, "must name one scenario, not two that differ")
+    return list(found.values())
+
+
+def _of_catalogue(name: str) -> list[Scenario]:
+    if name not in CATALOGUE and name not in TABLES:
+        near = difflib.get_close_matches(name, [*CATALOGUE, *TABLES], cutoff=0.5)
+        hint = f"did you mean {' or '.join(near)}?" if near else "see `kswarms list`"
+        raise InputError("id", name, f"must be a scenario or table of the list; {hint}")
+    return [CATALOGUE[each] for each in (TABLES[name].scenarios if name in TABLES else [name])]
 
 
 def planned(

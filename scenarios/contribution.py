@@ -10,7 +10,7 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import TemporaryDirectory, TemporaryFile
 from typing import Any, Final, Literal
 
 import pyarrow as pa
@@ -26,7 +26,6 @@ from model.game import Game
 from scenarios.choice import words
 from scenarios.runner import Outcome, play_all
 from scenarios.runs import Run, digest
-from scenarios.tables import prepare
 
 FILE: Final = "contribution.parquet"
 
@@ -264,7 +263,12 @@ def prepare_table(directory: Path) -> None:
     InputError
         If it cannot, or a file of its name is none of ours.
     """
-    prepare(directory)
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        with TemporaryFile(dir=directory):
+            pass
+    except OSError as error:
+        raise InputError("out", str(directory), f"must be a writable directory ({error.strerror})") from error
     path = directory / FILE
     try:
         ours = not path.exists() or pq.read_schema(path).equals(SCHEMA)

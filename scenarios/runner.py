@@ -1,26 +1,35 @@
-"""Plays runs: in this process or in several, with the same results in any number and any order."""
+"""Plays runs: in this process, in several, or wherever an executor leads; the results are the same."""
 
-import os
-import signal
-import threading
-from collections.abc import Generator, Iterable, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
+import time
+import traceback
+from collections import deque
+from collections.abc import Generator, Sequence
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from contextlib import closing
 from dataclasses import dataclass
-from multiprocessing import active_children, get_context, parent_process
+from queue import SimpleQueue
 from typing import Any, Final
 
-from scenarios.runs import Run
+from scenarios.runs import Run, code_version, require_unchanged
 
 RECORDS: Final = ("conflicts", "robots", "trajectory")
 """Tables that a game can record, besides its results."""
 
-GAMES_A_WORKER: Final = 100
-"""Games after which worker processes are replaced by new ones."""
-
 
 class RunError(RuntimeError):
-    """A run, named in the message, could not be played to its end."""
+    """A run, named in the message, could not be played to its end.
+
+    Parameters
+    ----------
+    message : str
+        Which run, and why.
+    trace : str
+        Where in the program, as Python prints it.
+    """
+
+    def __init__(self, message: str, trace: str = "") -> None:
+        super().__init__(message)
+        self.trace = trace
 
 
 @dataclass(frozen=True)
@@ -40,6 +49,26 @@ class Outcome:
     swarms: list[dict[str, Any]]
     policies: list[dict[str, Any]]
     records: dict[str, dict[str, list[Any]]]
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why there is no outcome.
+
+    Attributes
+    ----------
+    error : str
+        The error, in a line.
+    trace : str
+        Where in the program, as Python prints it; empty if the program did not get to say so.
+    """
+
+    error: str
+    trace: str = ""
+
+
+Result = tuple[Run, Outcome | Failure, float]
+"""A run, what came out of it, and the CPU time it took (s)."""
 
 
 def play(run: Run, record: str = "") -> Outcome:
@@ -65,90 +94,163 @@ def play(run: Run, record: str = "") -> Outcome:
 
     model = None
     try:
+        require_unchanged(run)
         model = GameModel(run.game, seed=run.seed, record=record)
         model.play()
         return Outcome(model.results(), policy_rows(model), model.tables())
     except Exception as error:
-        raise RunError(f"{_name(run)} failed: {type(error).__name__}: {error}") from error
+        message = f"{name_of(run)} failed: {_line(error)}"
+        raise RunError(message, traceback.format_exc()) from error
     finally:
         # Mesa counts the agents of every model in a table of the class, and so keeps the model alive.
         Agent._ids.pop(model, None)
 
 
+def attempt(run: Run, record: str, code: str) -> tuple[Outcome | Failure, float]:
+    """Play one run, and return a failure as what came out of it.
+
+    Parameters
+    ----------
+    run, record
+        As for `play`.
+    code : str
+        The code that is to play it, as `scenarios.runs.code_version` gives it. On a cluster, a worker may
+        have another.
+
+    Returns
+    -------
+    outcome : Outcome or Failure
+        What came out.
+    seconds : float
+        CPU time (s).
+    """
+    if code != code_version():
+        return Failure(f"the worker has kswarms {code_version()}, it must have {code}"), 0.0
+    started = time.thread_time()
+    result: Outcome | Failure
+    try:
+        result = play(run, record)
+    except RunError as error:
+        result = Failure(_line(error.__cause__ or error), error.trace)
+    return result, time.thread_time() - started
+
+
 def play_all(
-    runs: Sequence[Run], jobs: int = 1, record: str = ""
+    runs: Sequence[Run], jobs: int = 1, record: str = "", executor: Executor | None = None
 ) -> Generator[tuple[Run, Outcome], None, None]:
     """Play runs, the longest first, and yield each with its outcome as it ends.
+
+    Parameters
+    ----------
+    runs, jobs, record, executor
+        As for `sweep`.
+
+    Raises
+    ------
+    RunError
+        If a game fails or a worker process dies of it.
+    """
+    with closing(sweep(runs, jobs, record, executor)) as played:
+        for run, result, _ in played:
+            if isinstance(result, Failure):
+                raise RunError(f"{name_of(run)} failed: {result.error}", result.trace)
+            yield run, result
+
+
+def sweep(
+    runs: Sequence[Run], jobs: int = 1, record: str = "", executor: Executor | None = None
+) -> Generator[Result, None, None]:
+    """Play runs, the longest first, and yield each with what came out of it as it ends.
+
+    What has ended is not kept, so the memory that a sweep takes does not grow with it.
 
     Parameters
     ----------
     runs : sequence of Run
         What is played.
     jobs : int
-        Processes that play; 1 plays in this one.
+        How many are played at the same time; 1 without an executor plays in this process.
     record : str
         Names of the tables to record, separated by commas.
+    executor : concurrent.futures.Executor, optional
+        Who plays; by default processes on this machine (`scenarios.workers`), which are replaced when
+        they die.
 
     Raises
     ------
     RunError
-        If a game fails or a worker process dies.
+        If the executor gives up.
     """
-    longest_first = sorted(runs, key=lambda run: run.effort, reverse=True)
-    if min(jobs, len(runs)) == 1:
-        for run in longest_first:
-            yield run, play(run, record)
-        return
-    # Fresh workers for each portion bound what Mesa leaves behind in a process. The executor's own
-    # `max_tasks_per_child` hangs in Python 3.11 (CPython issue 115634).
-    portion = jobs * GAMES_A_WORKER
-    for start in range(0, len(runs), portion):
-        yield from _play_in_processes(longest_first[start : start + portion], jobs, record)
+    waiting = deque(sorted(runs, key=lambda run: run.effort, reverse=True))
+    if executor is not None:
+        for run, result, seconds in play_through(executor, waiting, jobs, record):
+            if result is None:
+                raise RunError("the workers are gone: what was played is kept")
+            yield run, result, seconds
+    elif min(jobs, len(runs)) <= 1:
+        for run in waiting:
+            yield run, *attempt(run, record, code_version())
+    else:
+        from scenarios.workers import in_processes
+
+        yield from in_processes(waiting, jobs, record)
 
 
-def _play_in_processes(
-    runs: Iterable[Run], jobs: int, record: str
-) -> Generator[tuple[Run, Outcome], None, None]:
-    others = set(active_children())
-    executor = ProcessPoolExecutor(jobs, get_context("spawn"), _follow_parent)
-    try:
-        futures = _submit(executor, runs, record)
-        for future in as_completed(futures):
-            # Popped, so that an outcome is freed as soon as its consumer is done with it.
-            yield futures.pop(future), future.result()
-    except BrokenProcessPool as error:
-        raise RunError("a worker process died during a game: killed, or short of memory?") from error
-    except BaseException:
-        # Ctrl-C, a failed game, or nobody wants the rest: do not wait for games that may take minutes.
-        for worker in set(active_children()) - others:
-            worker.terminate()
-        raise
-    finally:
-        executor.shutdown(cancel_futures=True)
+def play_through(
+    executor: Executor, waiting: deque[Run], jobs: int, record: str
+) -> Generator[tuple[Run, Outcome | Failure | None, float], None, None]:
+    """Play runs through an executor, and yield each as it ends.
+
+    Parameters
+    ----------
+    executor : concurrent.futures.Executor
+        Who plays.
+    waiting : deque of Run
+        What is played, in order. If the executor breaks, what it had not begun is left in it.
+    jobs : int
+        How many it plays at the same time; twice as many are given to it at a time.
+    record : str
+        Names of the tables to record, separated by commas.
+
+    Yields
+    ------
+    run : Run
+        What was played.
+    result : Outcome, Failure or None
+        What came out; None if the executor broke, maybe because of this run.
+    seconds : float
+        CPU time (s).
+    """
+    ended: SimpleQueue[Future[Any]] = SimpleQueue()
+    playing: dict[Future[Any], Run] = {}
+    broken = False
+    while playing or (waiting and not broken):
+        while waiting and len(playing) < 2 * jobs and not broken:
+            try:
+                future = executor.submit(attempt, waiting[0], record, code_version())
+            except BrokenExecutor:
+                broken = True
+            else:
+                playing[future] = waiting.popleft()
+                future.add_done_callback(ended.put)
+        if playing:
+            future = ended.get()
+            run = playing.pop(future)
+            error = CancelledError() if future.cancelled() else future.exception()
+            if isinstance(error, BrokenExecutor | CancelledError):
+                broken = True
+                yield run, None, 0.0
+            elif error is not None:  # what was asked or answered could not be sent, say
+                yield run, Failure(_line(error), "".join(traceback.format_exception(error))), 0.0
+            else:
+                yield run, *future.result()
 
 
-def _submit(executor: ProcessPoolExecutor, runs: Iterable[Run], record: str) -> dict[Future[Outcome], Run]:
-    # Submitting starts the workers, and they inherit the mask: Ctrl-C, which a terminal sends to them
-    # too, is left to this process from their first moment on.
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
-    try:
-        return {executor.submit(play, run, record): run for run in runs}
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-
-
-def _follow_parent() -> None:
-    """Let this worker end when its parent does, even if that is killed."""
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-
-
-def _end_with_parent() -> None:
-    parent = parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)
-
-
-def _name(run: Run) -> str:
+def name_of(run: Run) -> str:
+    """Name a run as people do."""
     scenario, condition = run.labels[0]
     return f"run scenario={scenario!r} condition={condition!r} n={run.n} seed={run.seed}"
+
+
+def _line(error: BaseException) -> str:
+    return " ".join(f"{type(error).__name__}: {error}".split())

@@ -8,10 +8,12 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-from agents.calls import parse_call
+from agents.errors import InputError
+from agents.own import files
 from agents.policies import parts
 from model.game import Game
-from scenarios.description import Scenario
+from scenarios.cost import cpu_seconds
+from scenarios.description import Condition, Scenario
 
 
 @dataclass(frozen=True)
@@ -42,8 +44,9 @@ class Run:
 
     @property
     def effort(self) -> float:
-        """Robot-periods at most, those of learning included, by which long runs are told from short ones."""
-        return self.n * (self.game.learning + self.game.duration) / self.game.parameters.period
+        """CPU time that it takes, roughly (s), by which long runs are told from short ones."""
+        game = self.game
+        return cpu_seconds(self.n, game.learning, game.duration, game.puck_limit, game.parameters.period)
 
 
 @cache
@@ -52,27 +55,81 @@ def package_version() -> str:
     return version("kswarms")
 
 
+@cache
+def code_version() -> str:
+    """Return the version of this package with a fingerprint of the code that plays: of `agents` and `model`.
+
+    Two states of the code that a developer gave no versions of their own differ in it.
+    """
+    root = Path(__file__).parent.parent
+    content = hashlib.sha256()
+    for package in ("agents", "model"):
+        for path in sorted((root / package).rglob("*.py")):
+            content.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())
+    return f"{package_version()} {content.hexdigest()[:12]}"
+
+
 def digest(game: Game, seed: int) -> str:
     """Return the name of what is simulated: 16 hexadecimal digits of a SHA-256.
 
-    It covers the game, the learned policies that it loads, the seed and the version of the package, so
-    two runs of one name have the same results. 64 bits keep a study of a million runs clear of
-    collisions (odds of 3 in 10⁸).
+    It covers the game, the learned policies and the users' code that it loads, the seed and the version of
+    the package, so two runs of one name have the same results. 64 bits keep a study of a million runs clear
+    of collisions (odds of 3 in 10⁸).
     """
+    return digests(game, (seed,))[0]
+
+
+def digests(game: Game, seeds: Iterable[int]) -> list[str]:
+    """Return the names of one game with several seeds, each as `digest` gives it."""
     content = {
         "game": game.model_dump(mode="json"),
-        "files": [hashlib.sha256(file.read_bytes()).hexdigest() for file in _loaded(game)],
-        "seed": seed,
+        "files": _contents(game),
         "version": package_version(),
     }
-    text = json.dumps(content, sort_keys=True, separators=(",", ":"))
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
+    return [_hash({**content, "seed": seed}) for seed in seeds]
+
+
+def describe_curve(condition: Condition, n: int) -> str:
+    """Return what decides the results of a curve, but the number of robots and the seed, as JSON.
+
+    Parameters
+    ----------
+    condition : Condition
+        The curve.
+    n : int
+        Any of its numbers of robots.
+    """
+    return _json({"condition": condition.model_dump(mode="json"), "files": _contents(condition.game(n))})
+
+
+def _hash(content: object) -> str:
+    return hashlib.sha256(_json(content).encode()).hexdigest()[:16]
+
+
+def _json(content: object) -> str:
+    return json.dumps(content, sort_keys=True, separators=(",", ":"))
+
+
+def _contents(game: Game) -> list[str]:
+    return [hashlib.sha256(file.read_bytes()).hexdigest() for file in _loaded(game)]
 
 
 def _loaded(game: Game) -> list[Path]:
-    """Return the files whose learned policies play in a game."""
-    calls = [parse_call("policy", text) for swarm in game.swarms for text in parts(swarm.policy)]
-    return [Path(call.arguments["file"]) for call in calls if call.name == "learned"]
+    """Return the files of learned policies and of users' code that play in a game."""
+    return [file for swarm in game.swarms for text in parts(swarm.policy) for file in files(text)]
+
+
+def require_unchanged(run: Run) -> None:
+    """Make sure that a run still is what its name says.
+
+    Raises
+    ------
+    InputError
+        If a file that it is made of was changed since it was named.
+    """
+    if (loaded := _loaded(run.game)) and digest(run.game, run.seed) != run.digest:
+        names = ", ".join(dict.fromkeys(map(str, loaded)))
+        raise InputError("policy", names, "must not change while its games are played")
 
 
 def expand(scenarios: Iterable[Scenario], first_seed: int = 0) -> list[Run]:
@@ -91,8 +148,8 @@ def expand(scenarios: Iterable[Scenario], first_seed: int = 0) -> list[Run]:
             label = (scenario.id, condition.name)
             for n in scenario.densities:
                 game = condition.game(n)
-                for seed in range(first_seed, first_seed + scenario.seeds):
-                    name = digest(game, seed)
+                seeds = range(first_seed, first_seed + scenario.seeds)
+                for seed, name in zip(seeds, digests(game, seeds), strict=True):
                     labels = runs[name].labels if name in runs else ()
                     runs[name] = Run(name, game, seed, (*labels, label))
     return list(runs.values())

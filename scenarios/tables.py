@@ -1,16 +1,15 @@
 """The tables of results: Parquet files by the contract of section 3.5, written whole or not at all."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import islice
 from pathlib import Path
-from tempfile import TemporaryDirectory, TemporaryFile
-from typing import Final
+from typing import Any, Final
 
 import pyarrow as pa
-import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
-from agents.errors import InputError
-from scenarios.runner import Outcome
+from scenarios.ledger import Ledger, Point
+from scenarios.runner import RECORDS, Outcome
 from scenarios.runs import Run
 
 _TEXT, _WHOLE, _REAL, _YES_NO = pa.string(), pa.int64(), pa.float64(), pa.bool_()
@@ -118,120 +117,105 @@ SCHEMAS: Final = {
 }
 """Columns of every table by its name, which is the name of its file."""
 
-Row = Mapping[str, object]
+_RESULTS: Final = {"runs": "swarms", "policies": "policies"}
+"""What the ledger calls the rows of the tables that have labels."""
 
-_CURVE_POINT: Final = ("scenario", "condition", "n", "seed")
-_ORDER: Final = {"runs": (*_CURVE_POINT, "swarm"), "policies": (*_CURVE_POINT, "swarm", "opponent")}
+_POINTS_AT_ONCE: Final = 1000
+_ROWS_AT_ONCE: Final = 100_000
+"""Rows of a group in a file; more are not held in memory."""
+
+Row = Mapping[str, Any]
 
 
 def tabulate(run: Run, outcome: Outcome) -> dict[str, pa.Table]:
     """Return what came out of a run as tables: ``runs``, ``policies`` if a swarm learned, and the records."""
-    labels = [
-        {"run": run.digest, "scenario": scenario, "condition": condition, "n": run.n, "seed": run.seed}
-        for scenario, condition in run.labels
-    ]
-    tables = {"runs": _labelled(RUNS, labels, outcome.swarms)}
+    points = [Point(run.digest, *label, run.n, run.seed) for label in run.labels]
+    tables = {"runs": _labelled("runs", ((point, outcome.swarms) for point in points))}
     if outcome.policies:
-        tables["policies"] = _labelled(POLICIES, labels, outcome.policies)
+        tables["policies"] = _labelled("policies", ((point, outcome.policies) for point in points))
     for name, columns in outcome.records.items():
-        length = len(next(iter(columns.values())))
-        tables[name] = {"run": [run.digest] * length} | columns
-    return {name: pa.table(columns, schema=SCHEMAS[name]) for name, columns in tables.items()}
+        tables[name] = _of_run(run.digest, name, _record(name, columns))
+    return tables
 
 
-def _labelled(schema: pa.Schema, labels: Iterable[Row], rows: Sequence[Row]) -> dict[str, list[object]]:
-    named = [{**label, **row} for label in labels for row in rows]
-    return {column: [row[column] for row in named] for column in schema.names}
+def pack(outcome: Outcome) -> dict[str, bytes]:
+    """Return the recorded tables of a run, each packed into bytes for the ledger."""
+    packed = {}
+    for name, columns in outcome.records.items():
+        table = _record(name, columns)
+        sink = pa.BufferOutputStream()
+        options = pa.ipc.IpcWriteOptions(compression="zstd")
+        with pa.ipc.new_stream(sink, table.schema, options=options) as writer:
+            writer.write_table(table)
+        packed[name] = sink.getvalue().to_pybytes()
+    return packed
 
 
-def prepare(directory: Path) -> None:
-    """Make the directory for results, if need be, and make sure that tables can be written there.
-
-    Raises
-    ------
-    InputError
-        If it is not a directory, cannot be written to, or holds a file of a table's name that is
-        none of ours.
-    """
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        with TemporaryFile(dir=directory):
-            pass
-    except OSError as error:
-        raise InputError("out", str(directory), f"must be a writable directory ({error.strerror})") from error
-    for name, schema in SCHEMAS.items():
-        path = _path(directory, name)
-        try:
-            ours = not path.exists() or pq.read_schema(path).equals(schema)
-        except (OSError, pa.ArrowException):
-            ours = False
-        if not ours:
-            raise InputError("out", str(directory), f"holds a {path.name} that is no table of kswarms")
-
-
-def write(directory: Path, parts: Iterable[Mapping[str, pa.Table]]) -> list[Path]:
-    """Write tables, together with the rows that the directory holds already.
-
-    Earlier rows of a (scenario, condition, n, seed) that is written anew are replaced, and the
-    recorded tables keep the rows of exactly the runs that ``runs.parquet`` then names. What is
-    written depends on the rows alone, not on their order.
+def export(ledger: Ledger, directory: Path) -> list[Path]:
+    """Write the tables of all runs that are done; what they hold does not depend on who played them when.
 
     Parameters
     ----------
+    ledger : Ledger
+        What is done.
     directory : Path
-        A directory that went through `prepare`.
-    parts : iterable of dict of str to pyarrow.Table
-        Tables by name, as `tabulate` gives them.
+        Where the files go.
 
     Returns
     -------
     list of Path
-        The files written.
+        The files: of each table with a row, and of each record that some run has.
 
     Raises
     ------
     OSError
-        If writing fails; then every file is as it was.
+        If writing fails.
     """
-    parts = list(parts)
-    replaced = {point for part in parts for point in _curve_points(part["runs"])}
-    present = {"runs", *(name for part in parts for name in part)}
-    tables: dict[str, pa.Table] = {}
-    for name, schema in SCHEMAS.items():
-        earlier = _read(directory, name)
-        added = pa.concat_tables([schema.empty_table(), *(part[name] for part in parts if name in part)])
-        if name in _ORDER:
-            again = pa.array([point in replaced for point in _curve_points(earlier)], pa.bool_())
-        else:
-            again = _of_runs(earlier, added)
-        table = pa.concat_tables([earlier.filter(pc.invert(again)), added])
-        if name != "runs":
-            table = table.filter(_of_runs(table, tables["runs"]))
-        if name in present or len(earlier):
-            # Stable: rows of one key, as the actions of a policy, keep their order.
-            tables[name] = table.sort_by([(column, "ascending") for column in _ORDER.get(name, ("run",))])
+    names = [name for name in SCHEMAS if _write(name, _rows(ledger, name), directory)]
+    return [_path(directory, name) for name in names]
 
-    with TemporaryDirectory(dir=directory, prefix=".unfinished-") as unfinished:
-        for name, table in tables.items():
-            pq.write_table(table.combine_chunks(), _path(Path(unfinished), name))
-        for name in tables:
-            _path(Path(unfinished), name).replace(_path(directory, name))
-    return [_path(directory, name) for name in tables]
+
+def _rows(ledger: Ledger, name: str) -> Iterator[pa.Table]:
+    """Yield the rows of a table, in order, some at a time."""
+    if name in RECORDS:
+        for run, rows in ledger.records(name):
+            yield _of_run(run, name, pa.ipc.open_stream(rows).read_all())
+    else:
+        points = ledger.results(_RESULTS[name])
+        while some := list(islice(points, _POINTS_AT_ONCE)):
+            yield _labelled(name, some)
+
+
+def _write(name: str, parts: Iterable[pa.Table], directory: Path) -> bool:
+    """Write a table, a group of rows at a time, and tell whether there was anything to write."""
+    parts = iter(parts)
+    first = next(parts, None)
+    if first is None:
+        return False
+    with pq.ParquetWriter(_path(directory, name), SCHEMAS[name]) as writer:
+        group = [first]
+        for part in parts:
+            if sum(map(len, group)) >= _ROWS_AT_ONCE:
+                writer.write_table(pa.concat_tables(group).combine_chunks())
+                group = []
+            group.append(part)
+        writer.write_table(pa.concat_tables(group).combine_chunks())
+    return True
+
+
+def _labelled(name: str, points: Iterable[tuple[Point, Iterable[Row]]]) -> pa.Table:
+    schema = SCHEMAS[name]
+    rows = [{**point._asdict(), **row} for point, rows in points for row in rows]
+    return pa.table({column: [row[column] for row in rows] for column in schema.names}, schema=schema)
+
+
+def _record(name: str, columns: Mapping[str, list[Any]]) -> pa.Table:
+    return pa.table(columns, schema=SCHEMAS[name].remove(0))  # the run comes in when it is exported
+
+
+def _of_run(run: str, name: str, record: pa.Table) -> pa.Table:
+    return record.add_column(0, SCHEMAS[name].field(0), pa.array([run] * len(record), _TEXT))
 
 
 def _path(directory: Path, name: str) -> Path:
     return directory / f"{name}.parquet"
-
-
-def _read(directory: Path, name: str) -> pa.Table:
-    path = _path(directory, name)
-    return pq.read_table(path, schema=SCHEMAS[name]) if path.exists() else SCHEMAS[name].empty_table()
-
-
-def _of_runs(table: pa.Table, runs: pa.Table) -> pa.BooleanArray:
-    """Tell for each row of a table whether its run is among those of another."""
-    return pc.is_in(table["run"], runs["run"].combine_chunks())
-
-
-def _curve_points(table: pa.Table) -> Iterable[tuple[object, ...]]:
-    return zip(*(table[column].to_pylist() for column in _CURVE_POINT), strict=True)

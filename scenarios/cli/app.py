@@ -5,7 +5,6 @@ that needs it.
 """
 
 import sys
-import traceback
 from collections.abc import Sequence
 from typing import Annotated, Final
 
@@ -15,7 +14,9 @@ from agents.errors import InputError
 from scenarios.cli.calibrate import calibrate
 from scenarios.cli.catalogue import list_scenarios, show
 from scenarios.cli.contribution import contribution
+from scenarios.cli.report import report
 from scenarios.cli.run import run
+from scenarios.cli.status import replay, status
 from scenarios.runner import RunError
 from scenarios.runs import package_version
 
@@ -49,19 +50,20 @@ def invoke(arguments: Sequence[str] | None = None) -> int:
         Exit status: 0 done, 1 failed, 2 bad input, 130 interrupted.
     """
     try:
-        status: int | None = app(arguments, prog_name="kswarms", standalone_mode=False)
+        words = sys.argv[1:] if arguments is None else arguments
+        code: int | None = app(words, prog_name="kswarms", standalone_mode=False, obj=("kswarms", *words))
     except InputError as error:
         return _complain(str(error), 2)
     except RunError as error:
-        traceback.print_exception(error.__cause__)  # a fault of the program, not of its input
+        typer.echo(error.trace, err=True)  # a fault of the program, not of its input
         return _complain(str(error), 1)
     except OSError as error:
         return _complain(str(error), 1)
     except typer.TyperException as error:  # typer's own complaints: an unknown command or option, no number
         return _complain(error.format_message(), error.exit_code)
-    if status == INTERRUPTED:
-        return _complain("interrupted", status)
-    return status or 0
+    if code == INTERRUPTED:
+        return _complain("interrupted", code)
+    return code or 0
 
 
 def _complain(message: str, status: int) -> int:
@@ -89,7 +91,10 @@ def _without_command(
 app.command("list", epilog="Example: kswarms list")(list_scenarios)
 app.command(epilog="Example: kswarms show fig-6.1c")(show)
 app.command(epilog="Example: kswarms run fig-6.1a fig-6.1c --densities 6,30,50 --seeds 5")(run)
+app.command(epilog="Example: kswarms status results")(status)
+app.command(epilog="Example: kswarms replay results 0c2b1f7a9d3e4f56")(replay)
 app.command(epilog="Example: kswarms calibrate --free friction,gamma --densities 16,30,50 --seeds 2")(
     calibrate
 )
 app.command(epilog="Example: kswarms contribution fig-6.4b --n 16 --robots S2 --seeds 5")(contribution)
+app.command(epilog="Example: kswarms report results --out report.html")(report)

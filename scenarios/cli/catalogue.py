@@ -1,26 +1,54 @@
 """What there is to play: ``list`` and ``show``."""
 
+from collections.abc import Iterable
 from typing import Annotated
 
 import typer
 
+from model.parameters import parse_parameters
 from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.choice import chosen
-from scenarios.description import toml_of
+from scenarios.cli.progress import clock
+from scenarios.cost import cpu_seconds
+from scenarios.description import Condition, Scenario, toml_of
 
 
 def list_scenarios() -> None:
-    """List the scenarios of the catalogue, and the tables made of some."""
-    titles = {name: scenario.title for name, scenario in CATALOGUE.items()}
-    titles |= {name: table.title for name, table in TABLES.items()}
-    width = max(map(len, titles))
-    for name, title in titles.items():
-        typer.echo(f"{name:<{width}}  {title}")
+    """List the scenarios of the catalogue, and the tables made of some, with what they take on one core."""
+    rows = [("id", "curves", "runs", "CPU time", "title")]
+    for name, scenario in CATALOGUE.items():
+        rows.append((name, *_size([scenario]), scenario.title))
+    for name, table in TABLES.items():
+        rows.append((name, *_size(CATALOGUE[each] for each in table.scenarios), table.title))
+    rows.append(("--all", *_size(CATALOGUE.values()), "All scenarios; what they share is played once"))
+    widths = [max(len(row[k]) for row in rows) for k in range(4)]
+    for name, *numbers, title in rows:
+        cells = (cell.rjust(width) for cell, width in zip(numbers, widths[1:], strict=True))
+        typer.echo("  ".join([name.ljust(widths[0]), *cells, title]))
+
+
+def _size(scenarios: Iterable[Scenario]) -> tuple[str, str, str]:
+    """Return the curves, the runs and their CPU time, what is the same but for its name once."""
+    seeds: dict[tuple[Condition, int], int] = {}
+    for scenario in scenarios:
+        for condition in scenario.conditions:
+            nameless = condition.model_copy(update={"name": ""})
+            for n in scenario.densities:
+                seeds[nameless, n] = max(scenario.seeds, seeds.get((nameless, n), 0))
+    curves = {condition for condition, _ in seeds}
+    periods = {curve.parameters: parse_parameters(curve.parameters).period for curve in curves}
+    cost = sum(
+        games * cpu_seconds(n, each.learning, each.duration, each.puck_limit, periods[each.parameters])
+        for (each, n), games in seeds.items()
+    )
+    return str(len(curves)), f"{sum(seeds.values()):,}", clock(cost)
 
 
 def show(
-    wanted: Annotated[str, typer.Argument(metavar="ID", help="A scenario or table of the list.")],
+    wanted: Annotated[str, typer.Argument(metavar="ID", help="A scenario or table of the list, or my.toml.")],
 ) -> None:
-    """Print a scenario as TOML, or those that a table is made of."""
+    """Print a scenario as TOML, or those that a table is made of; edited, `kswarms run my.toml` plays it."""
     scenarios = chosen([wanted])
-    typer.echo(toml_of(scenarios) if wanted in TABLES else scenarios[0].to_toml(), nl=False)
+    typer.echo(
+        toml_of(scenarios) if len(scenarios) > 1 or wanted in TABLES else scenarios[0].to_toml(), nl=False
+    )

@@ -2,7 +2,7 @@
 
 import shlex
 from collections.abc import Sequence
-from contextlib import closing
+from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import Annotated, Final
 
@@ -12,17 +12,21 @@ from agents.errors import InputError
 from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.choice import chosen, integers, planned, words
 from scenarios.cli.options import Jobs, processes
+from scenarios.cli.progress import KINDS, check_kind, told
 from scenarios.description import Scenario
-from scenarios.runner import RECORDS, play_all
-from scenarios.runs import Run, expand
+from scenarios.runner import RECORDS
 
 # Of a printed table: as wide as it is, for rich would break the cells in a pipe's 80 columns.
 _ANY_WIDTH: Final = 1000
 
 
 def run(
+    context: typer.Context,
     ids: Annotated[
-        list[str] | None, typer.Argument(metavar="ID...", help="Scenarios or tables of the list.")
+        list[str] | None,
+        typer.Argument(
+            metavar="ID...", help="Scenarios or tables of the list, or files of your own: my.toml."
+        ),
     ] = None,
     everything: Annotated[
         bool, typer.Option("--all", help="All scenarios, each with those --densities that suit it.")
@@ -35,41 +39,101 @@ def run(
     ] = None,
     first_seed: Annotated[int, typer.Option(help="Seed of the first of these games.")] = 0,
     jobs: Jobs = None,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Where the results go.")] = Path("results"),
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Play on the Dask cluster of this scheduler.")
+    ] = None,
+    out: Annotated[
+        Path, typer.Option(metavar="DIR", help="Where the results go, and are gone on from.")
+    ] = Path("results"),
     record: Annotated[
         str, typer.Option(metavar="NAME,...", help=f"More tables to write: {', '.join(RECORDS)}.")
     ] = "",
     no_figures: Annotated[bool, typer.Option("--no-figures", help="Write the tables alone.")] = False,
-) -> None:
-    """Play scenarios, write tables of their results and draw a figure of each."""
+    progress: Annotated[
+        str, typer.Option(metavar="KIND", help=f"How to tell how far it is: {', '.join(KINDS)}.")
+    ] = "bar",
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print what goes wrong alone.")] = False,
+) -> int:
+    """Play scenarios, write tables of their results and draw a figure of each.
+
+    Called again, after whatever end, it goes on: what DIR has is not played again.
+    """
     ids = ids or []
     if bool(ids) == everything:
         raise InputError("id", " ".join(ids), "must be one or more of `kswarms list`, or none with --all")
     scenarios, left_out = planned(
         chosen(ids or CATALOGUE), integers("densities", densities), seeds, suitable_only=everything
     )
-    if left_out:
-        typer.echo(f"kswarms: none of the densities suits {', '.join(left_out)}: left out", err=True)
     if first_seed < 0:
         raise InputError("first_seed", first_seed, "must be at least 0")
     workers = processes(jobs)
-    names = words(record)
-    for name in names:
+    records = words(record)
+    for name in records:
         if name not in RECORDS:
             raise InputError("record", name, f"must be among {', '.join(RECORDS)}")
+    kind = "none" if quiet else check_kind(progress)
+    if left_out:
+        typer.echo(f"kswarms: none of the densities suits {', '.join(left_out)}: left out", err=True)
 
-    for table in _play(expand(scenarios, first_seed), workers, ",".join(names), out):
-        typer.echo(f"table:  {table}")
-    if not no_figures:
+    tables, failed = _play(
+        scenarios, first_seed, workers, scheduler, records, out, kind, shlex.join(context.obj)
+    )
+    lines = [f"table:  {table}" for table in tables]
+    if tables and not no_figures:
         from analysis.figures import draw
 
         titles = {scenario.id: scenario.title for scenario in scenarios}
-        for picture in draw(out, list(titles), titles):
-            typer.echo(f"figure: {picture}")
-    for table_id in dict.fromkeys(ids):
-        if table_id in TABLES:
-            _print_table(table_id, out)
-    typer.echo(f"next:   {_next_command(scenarios, out)}")
+        lines += [f"figure: {picture}" for picture in draw(out, list(titles), titles)]
+    if not quiet:
+        for line in lines:
+            typer.echo(line)
+        for table_id in dict.fromkeys(ids):
+            if table_id in TABLES and tables:
+                _print_table(table_id, out)
+        typer.echo(f"next:   {_next_command(scenarios, out, failed)}")
+    return 1 if failed else 0
+
+
+def _play(
+    scenarios: Sequence[Scenario],
+    first_seed: int,
+    jobs: int,
+    scheduler: str | None,
+    records: Sequence[str],
+    out: Path,
+    progress: str,
+    command: str,
+) -> tuple[list[Path], int]:
+    """Play what is not played yet; return the tables written and how many runs failed."""
+    from scenarios.study import Study
+
+    failed = 0
+    with ExitStack() as stack:
+        executor = None
+        if scheduler is not None:
+            from scenarios.cluster import connected
+
+            executor, jobs = stack.enter_context(connected(scheduler))
+        study = stack.enter_context(Study(out, command))
+        runs = study.plan(scenarios, first_seed, records)
+        for code in study.other_code:
+            typer.echo(
+                f"kswarms: {out} keeps runs of other code, {code}; to play them anew, name another --out",
+                err=True,
+            )
+        try:
+            with closing(study.play(runs, jobs, records, executor)) as played:
+                for count in told(played, runs, progress):
+                    failed = count.failed
+        except KeyboardInterrupt:
+            typer.echo(f"kswarms: {out} keeps what was played; the same command goes on", err=True)
+            raise
+    if failed:
+        typer.echo(
+            f"kswarms: {failed} of {len(runs)} runs failed; see `kswarms status {shlex.quote(str(out))}`",
+            err=True,
+        )
+    return study.tables, failed
 
 
 def _print_table(table_id: str, out: Path) -> None:
@@ -90,20 +154,11 @@ def _print_table(table_id: str, out: Path) -> None:
     console.print(f"\n{table_id}: {title}", table, text.caption, sep="\n")
 
 
-def _play(runs: Sequence[Run], jobs: int, record: str, out: Path) -> list[Path]:
-    from rich.console import Console
-    from rich.progress import track
-
-    from scenarios.tables import prepare, tabulate, write
-
-    prepare(out)
-    with closing(play_all(runs, jobs, record)) as played:
-        progress = track(played, "playing", total=len(runs), console=Console(stderr=True))
-        return write(out, [tabulate(run, outcome) for run, outcome in progress])
-
-
-def _next_command(played: Sequence[Scenario], out: Path) -> str:
+def _next_command(played: Sequence[Scenario], out: Path, failed: int) -> str:
+    directory = shlex.quote(str(out))
+    if failed:
+        return f"kswarms status {directory}  (what failed, and how to see it fail again)"
     rest = [scenario_id for scenario_id in CATALOGUE if scenario_id not in {each.id for each in played}]
     if not rest:
         return f"kswarms show {played[0].id}  (what was played)"
-    return f"kswarms run {rest[0]} --out {shlex.quote(str(out))}  (`kswarms list` names all)"
+    return f"kswarms run {rest[0]} --out {directory}  (`kswarms list` names all)"

@@ -9,12 +9,21 @@ import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.axes import Axes
-from matplotlib.collections import PathCollection, PolyCollection
+from matplotlib.collections import LineCollection, PathCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from agents.errors import InputError
-from analysis.figures import draw, pucks_over_n, sud_over_n, time_shares
+from analysis.drawing import SAFE, SOURCE
+from analysis.figures import (
+    TIME_SHARES,
+    draw,
+    figure_of,
+    pucks_over_n,
+    quantities,
+    sud_over_n,
+    time_shares,
+)
 
 DENSITIES = (6, 16, 26)
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -149,6 +158,8 @@ def test_legend_leaves_out_the_arguments_of_a_policy() -> None:
         {"policy": {"attack": """avoid+inter-learner(reward="wlu(delta=0.1, b=1.5)", rule='ucb')"""}}
     )
     assert legend(pucks_over_n(runs, "fig-x")) == ["S1: avoid", "S2: avoid+inter-learner"]
+    own = runs_of("fig-x").replace({"policy": {"attack": "far/away/my_file.py:Cautious(note='a:b')"}})
+    assert legend(pucks_over_n(own, "fig-x")) == ["S1: avoid", "S2: Cautious"]
 
 
 def test_labels_title_and_seeds() -> None:
@@ -168,6 +179,13 @@ def test_labels_title_and_seeds() -> None:
     fewer = runs[(runs["n"] != 6) | (runs["seed"] == 0)]
     assert pucks_over_n(fewer, "fig-x").legends[0].get_title().get_text().startswith("mean of 1 to 4 seeds")
     assert pucks_over_n(runs, "fig-x").get_suptitle() == "fig-x"
+
+
+def test_one_density_has_a_bar_for_each_interval() -> None:
+    figure = pucks_over_n(runs_of("fig-x", densities=[20], seeds=4), "fig-x")
+    bars = [drawn for drawn in figure.axes[0].collections if isinstance(drawn, LineCollection)]
+    ends = [sorted(segment[:, 1]) for drawn in bars for segment in drawn.get_segments()]
+    assert [low < mean < high for (low, high), mean in zip(ends, (30, 40), strict=True)] == [True, True]
 
 
 def test_one_seed_at_one_density_without_pucks() -> None:
@@ -248,16 +266,33 @@ SHOWING_SUD = ("6.10a", "6.10b", "6.12", "6.14", "7.4", "7.6", "7.8", "7.10", "7
         *((f"fig-{number}", "SUD of S2 (pucks)") for number in SHOWING_SUD),
     ],
 )
-def test_draw_shows_what_the_scenario_is_for(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scenario: str, label: str
-) -> None:
-    runs_of(scenario).to_parquet(tmp_path / "runs.parquet")
-    written: list[Figure] = []
-    monkeypatch.setattr("analysis.figures._write", lambda figure, path: written.append(figure))
-    draw(tmp_path, [scenario], {scenario: "its title"})
-    (figure,) = written
+def test_the_figure_of_a_scenario_shows_what_it_is_for(scenario: str, label: str) -> None:
+    figure = figure_of(runs_of(scenario), scenario, "its title")
     assert figure.axes[0].get_ylabel().startswith(label)
     assert figure.get_suptitle() == f"{scenario}: its title"
+    told = {"pucks": ("pucks",), "SUD": ("sud",), "share": TIME_SHARES}[label.split()[0]]
+    assert quantities(scenario) == told
+
+
+def test_the_source_s_form_has_means_alone() -> None:
+    figure = pucks_over_n(runs_of("fig-x"), "fig-x", look=SOURCE)
+    (axes,) = figure.axes
+    assert list(axes.collections) == []
+    assert heights(curves(axes)["S1: avoid"]) == [16, 26, 36]
+    assert curves(axes)["S1: avoid"].get_color() == "green"
+    assert figure.legends[0].get_title().get_text() == "mean of 4 seeds"
+
+
+def test_safe_colours_keep_the_lines_and_markers_of_the_source() -> None:
+    (ours,) = pucks_over_n(runs_of("fig-x", swarms=range(1, 4)), "fig-x", look=SAFE).axes
+    (source,) = pucks_over_n(runs_of("fig-x", swarms=range(1, 4)), "fig-x").axes
+    for line, as_printed in zip(curves(ours).values(), curves(source).values(), strict=True):
+        assert (line.get_linestyle(), line.get_marker()) == (
+            as_printed.get_linestyle(),
+            as_printed.get_marker(),
+        )
+        assert line.get_color() != as_printed.get_color()
+    assert len({line.get_color() for line in curves(ours).values()}) == 3
 
 
 def test_same_runs_same_picture(tmp_path: Path) -> None:

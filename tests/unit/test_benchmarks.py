@@ -1,12 +1,19 @@
 """The benchmark in a tiny form: its pieces run, and work that is not done is noticed; no time is judged."""
 
+import subprocess
+from pathlib import Path
 from typing import Any
 
+import pyarrow.parquet as pq
 import pytest
 
+from analysis.results import read_policies
 from benchmarks import bench
+from benchmarks import report as report_benchmark
 from benchmarks.bench import Plan, WorkError, count_work, time_game
 from model.foraging import GameModel
+from scenarios.catalogue import CATALOGUE
+from scenarios.tables import POLICIES, RUNS
 
 TINY = Plan("avoid,attack", 6, 30.0)
 
@@ -80,3 +87,32 @@ def test_new_processes_play_games() -> None:
     code = "from model.plain import ForagingModel\nForagingModel(n=2, record='', duration=1.0).play()"
     assert bench.peak_memory("pass") < bench.peak_memory(code) < 2000
     assert bench.seconds_to_game(6) > 0
+
+
+def test_a_made_up_study_keeps_the_contract_of_the_tables(tmp_path: Path) -> None:
+    scenarios = [CATALOGUE[name] for name in ("fig-6.8", "fig-7.10", "fig-6.15")]
+    rows = report_benchmark.write_study(tmp_path, scenarios, densities=1, seeds=2)
+    assert rows == 2 * (2 + 5 * 3 + 5)
+    for name, schema in (("runs", RUNS), ("policies", POLICIES)):
+        assert pq.read_schema(tmp_path / f"{name}.parquet").names == schema.names
+    learned = read_policies(tmp_path)
+    assert set(zip(learned["scenario"], learned["swarm"], learned["opponent"], strict=True)) == {
+        *(("fig-6.8", 2, opponent) for opponent in (1, 2)),
+        *(("fig-7.10", 2, opponent) for opponent in (1, 3)),
+        ("fig-6.15", 1, 1),
+    }
+
+
+def test_a_report_that_costs_too_much_fails(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def run(words: list[str], **_: object) -> subprocess.CompletedProcess[str]:
+        (Path(words[-1]) / "report.html").write_text("page")
+        return subprocess.CompletedProcess(words, 0, "report: …\n320.5\n")
+
+    monkeypatch.setattr(report_benchmark, "write_study", lambda directory: 7)
+    monkeypatch.setattr(subprocess, "run", run)
+    assert report_benchmark.main() == 0
+    assert "rows of runs 7; 0 s (at most 120); 320 MB" in capsys.readouterr().out
+    monkeypatch.setattr(report_benchmark, "MOST_MEMORY", 300)
+    assert report_benchmark.main() == 1

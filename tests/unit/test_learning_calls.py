@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from agents.calls import Call, build, parse_call, split_outside
 from agents.errors import InputError
-from agents.rewards import REWARDS, WLU
-from agents.selection import RULES, PeriodicRandom
+from agents.rewards import REWARDS, WLU, Reward
+from agents.selection import RULES, PeriodicRandom, Rule
 
 NUMBERS = st.integers() | st.floats(allow_nan=False, allow_infinity=False)
 VALUES = st.none() | st.booleans() | NUMBERS | st.text()
@@ -81,20 +81,21 @@ def test_what_is_refused(text: str) -> None:
 @pytest.mark.parametrize("value", [5, None, 0.5, ["wlu"], {"wlu": 1}])
 def test_what_is_no_text_is_refused(value: object) -> None:
     with pytest.raises(InputError) as caught:
-        build("reward", value, REWARDS)  # type: ignore[arg-type]
+        build("reward", value, REWARDS, Reward)  # type: ignore[arg-type]
     assert caught.value.field == "reward"
     assert caught.value.value == value
 
 
 def test_build() -> None:
-    assert build("reward", "wlu(delta={1: 0.5}, b=2)", REWARDS) == WLU(delta={1: 0.5}, b=2.0)
-    assert build("rule", "periodic-random(every=20)", RULES) == PeriodicRandom(every=20)
+    assert build("reward", "wlu(delta={1: 0.5}, b=2)", REWARDS, Reward) == WLU(delta={1: 0.5}, b=2.0)
+    assert build("rule", "periodic-random(every=20)", RULES, Rule) == PeriodicRandom(every=20)
 
 
 def test_what_is_unknown_is_named_with_what_is_known() -> None:
     with pytest.raises(InputError) as caught:
-        build("reward", "wlo(delta=0.1)", REWARDS)
-    assert str(caught.value) == "reward='wlo': must be one of wlu, individual, single-swarm"
+        build("reward", "wlo(delta=0.1)", REWARDS, Reward)
+    known = "wlu, individual, single-swarm, or a class as my_file.py:MyClass"
+    assert str(caught.value) == f"reward='wlo': must be one of {known}"
 
 
 @pytest.mark.parametrize(
@@ -108,13 +109,13 @@ def test_what_is_unknown_is_named_with_what_is_known() -> None:
 )
 def test_an_argument_that_is_not_allowed_is_named_with_its_path(text: str, line: str) -> None:
     with pytest.raises(InputError) as caught:
-        build("rule", text, RULES)
+        build("rule", text, RULES, Rule)
     assert str(caught.value) == line
 
 
 def test_an_argument_called_self_is_unknown_like_any_other() -> None:
     with pytest.raises(InputError):
-        build("rule", "ucb(self=1)", RULES)
+        build("rule", "ucb(self=1)", RULES, Rule)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,78 @@
+"""The numbers of a scenario's figure as a table: means over the seeds and intervals, a row for each N."""
+
+from collections.abc import Hashable, Mapping
+
+import pandas as pd
+
+from agents.errors import InputError
+from analysis.drawing import curves_of
+from analysis.figures import TIME_SHARES, quantities, with_time_shares
+from analysis.printed import PrintedTable
+from analysis.summaries import summary
+
+_UNITS = {"pucks": "pucks deposited by the swarm", "sud": "SUD of S2 (pucks)"}
+
+
+def scores(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
+    """Return the numbers behind the figure of a scenario (`analysis.figures.figure_of`).
+
+    Parameters
+    ----------
+    runs : pandas.DataFrame
+        Rows of `runs.parquet`.
+    scenario : str
+        Id of the scenario.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row for each `quantity` (str: ``pucks``, ``sud`` or a kind of time share), `curve` (str: its name
+        in the figure's legend) and `n` (int64), with `seeds` (int64), `mean`, `low`, `high` (float64): mean
+        over the seeds and its 95 % bootstrap interval, NaN where there is one seed.
+
+    Raises
+    ------
+    InputError
+        `runs` has no row of the scenario.
+    """
+    rows = runs[runs["scenario"] == scenario]
+    if rows.empty:
+        raise InputError("scenario", scenario, f"must be one of {', '.join(sorted(set(runs['scenario'])))}")
+    shown = quantities(scenario)
+    if shown == ("sud",):
+        rows = rows[rows["swarm"] == 2]
+    elif shown == TIME_SHARES:
+        rows = with_time_shares(rows)
+    parts = [
+        summary(curve.rows, quantity, by=()).assign(quantity=quantity, curve=curve.label)
+        for quantity in shown
+        for curve in curves_of(rows)
+    ]
+    return pd.concat(parts, ignore_index=True)[["quantity", "curve", "n", "seeds", "mean", "low", "high"]]
+
+
+def printed(frame: pd.DataFrame) -> PrintedTable:
+    """Print what `scores` returns: a row for each N, a column for each curve and quantity."""
+    densities = sorted(set(frame["n"]))
+    several = frame["quantity"].nunique() > 1
+    header, columns = ["N"], [[str(n) for n in densities]]
+    for (quantity, curve), column in frame.groupby(["quantity", "curve"], sort=False):
+        header.append(f"{curve}\n{quantity}" if several else str(curve))
+        by_density = column.set_index("n").reindex(densities)
+        digits = 1 if quantity in _UNITS else 3
+        columns.append([_cell(row, digits) for row in by_density.to_dict("records")])
+    unit = "share of time in conflict" if several else _UNITS[frame["quantity"].iloc[0]]
+    few, many = frame["seeds"].min(), frame["seeds"].max()
+    seeds = (
+        f"mean of {few if few == many else f'{few} to {many}'} seeds (95 % bootstrap interval)"
+        if many > 1
+        else "one seed"
+    )
+    return PrintedTable(header, [list(row) for row in zip(*columns, strict=True)], f"{unit}; {seeds}")
+
+
+def _cell(row: Mapping[Hashable, float], digits: int) -> str:
+    if pd.isna(row["mean"]):
+        return "–"
+    interval = "" if pd.isna(row["low"]) else f" ({row['low']:.{digits}f} … {row['high']:.{digits}f})"
+    return f"{row['mean']:.{digits}f}{interval}"

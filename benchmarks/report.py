@@ -1,0 +1,141 @@
+"""What a report costs: a made-up complete study, reported on in a process of its own.
+
+Run as a script it prints seconds, memory and size, and ends with 1 where they pass what is allowed.
+"""
+
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import pandas as pd
+
+from scenarios.catalogue import CATALOGUE
+from scenarios.description import Condition, Scenario
+
+MOST_SECONDS: Final = 120.0
+MOST_MEMORY: Final = 1500
+"""MB"""
+
+_REPORT: Final = """
+import resource, sys
+from scenarios.cli import invoke
+status = invoke(["report", sys.argv[1]])
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+sys.exit(status)
+"""
+
+
+def write_study(
+    directory: Path,
+    scenarios: Iterable[Scenario] = tuple(CATALOGUE.values()),
+    densities: int | None = None,
+    seeds: int | None = None,
+) -> int:
+    """Write `runs.parquet` and `policies.parquet` as if scenarios had been played, of random numbers.
+
+    Parameters
+    ----------
+    directory : Path
+        Where to; it exists.
+    scenarios : iterable of Scenario
+        Which.
+    densities, seeds : int, optional
+        How many of each scenario's first; all of them if not given.
+
+    Returns
+    -------
+    int
+        Rows of `runs.parquet`.
+    """
+    draws = np.random.default_rng(0)
+    runs, policies = [], []
+    for scenario in scenarios:
+        for condition in scenario.conditions:
+            for n in scenario.densities[:densities]:
+                sizes = condition.sizes(n)
+                for seed in range(scenario.seeds if seeds is None else seeds):
+                    key = {
+                        "run": f"{scenario.id}/{condition.name}/{n}/{seed}",
+                        "scenario": scenario.id,
+                        "condition": condition.name,
+                        "n": n,
+                        "seed": seed,
+                    }
+                    runs += [key | row for row in _swarms(condition, sizes, draws)]
+                    policies += [key | row for row in _learned(condition, draws)]
+    pd.DataFrame(runs).to_parquet(directory / "runs.parquet")
+    if policies:
+        pd.DataFrame(policies).to_parquet(directory / "policies.parquet")
+    return len(runs)
+
+
+def _swarms(condition: Condition, sizes: list[int], draws: np.random.Generator) -> list[dict[str, Any]]:
+    n = sum(sizes)
+    pucks = draws.poisson([size * (6.5 - 0.11 * n) for size in sizes])
+    share = np.clip(draws.normal(n / 60, 0.02, len(sizes)), 0, 1)
+    return [
+        {
+            "swarm": k + 1,
+            "size": size,
+            "policy": condition.swarms[k].policy,
+            "pucks": int(pucks[k]),
+            "sud": int(2 * pucks[k] - pucks.sum()),
+            "t_a_intra": 200.0 * size * share[k],
+            "t_a_inter": 400.0 * size * share[k],
+            "t_p": 600.0 * size * (1 - share[k]),
+            "conflicts_intra": 100 * size,
+            "conflicts_inter": 200 * size,
+            "duration": 600.0,
+            "ended": "time",
+        }
+        for k, size in enumerate(sizes)
+    ]
+
+
+def _learned(condition: Condition, draws: np.random.Generator) -> list[dict[str, Any]]:
+    rows = []
+    for k, rule in enumerate(condition.swarms):
+        if "learner" not in rule.policy:
+            continue
+        within = rule.policy.startswith(("learner", "intra-learner"))
+        beyond = rule.policy.startswith(("learner", "inter-learner"))
+        for opponent in range(len(condition.swarms)):
+            if (opponent == k and within) or (opponent != k and beyond):
+                attack = float(draws.uniform())
+                rows += [
+                    {
+                        "swarm": k + 1,
+                        "opponent": opponent + 1,
+                        "action": action,
+                        "share": share,
+                        "attack_share": attack,
+                    }
+                    for action, share in (("flight", 1 - attack), ("fight", attack))
+                ]
+    return rows
+
+
+def main() -> int:
+    """Print what the report on a complete study costs, and return 1 if that is too much."""
+    with tempfile.TemporaryDirectory() as name:
+        directory = Path(name)
+        rows = write_study(directory)
+        start = time.perf_counter()
+        done = subprocess.run(
+            [sys.executable, "-c", _REPORT, name], stdout=subprocess.PIPE, text=True, check=True
+        )
+        seconds = time.perf_counter() - start
+        size = (directory / "report.html").stat().st_size / 1e6
+    memory = float(done.stdout.splitlines()[-1])
+    print(f"rows of runs {rows:,}; {seconds:.0f} s (at most {MOST_SECONDS:.0f}); ", end="")
+    print(f"{memory:.0f} MB (at most {MOST_MEMORY}); report of {size:.1f} MB")
+    return int(seconds > MOST_SECONDS or memory > MOST_MEMORY)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,102 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation: {extension: .py, format_name: percent}
+#   kernelspec: {display_name: Python 3, language: python, name: python3}
+# ---
+
+# %% [markdown]
+# # First game
+#
+# Two swarms of ten robots each look for pucks in an arena of 2 × 2 m. S1 *avoids*: at a meeting it flees.
+# S2 *attacks*: it flees from its own and fights the others.
+
+# %%
+import matplotlib.pyplot as plt
+import pandas as pd
+import seaborn as sns
+
+from model.plain import ForagingModel
+
+model = ForagingModel(n=20, policies="avoid,attack", duration=600, seed=1)
+
+# %% [markdown]
+# `step()` plays one sampling period, 10 s. In between everything can be looked at: the model is a Mesa
+# model, its robots are Mesa agents.
+
+# %%
+for _ in range(6):
+    model.step()
+robot = model.robots[0]
+print(f"t = {model.time} s: robot 0 at {robot.position.round(2)}, state {robot.state}, puck {robot.carrying}")
+
+# %% [markdown]
+# The arena as it is now: supply stations black, bases in the colour of their swarm; a line for each robot's
+# heading, a black dot for a puck that it carries.
+
+# %%
+COLOURS = ("tab:green", "tab:red")
+
+
+def draw_arena(model, axes):
+    """Draw stations, bases and robots to scale."""
+    arena, parameters = model.arena, model.game.parameters
+    for x, y in arena.stations:
+        axes.add_patch(plt.Circle((x, y), parameters.station_radius, color="black"))
+    for (x, y), colour in zip(arena.bases, COLOURS, strict=True):
+        axes.add_patch(plt.Circle((x, y), parameters.base_radius, color=colour, alpha=0.3))
+    for robot in model.robots:
+        x, y = robot.position
+        row = model.fleet.robots[robot.index]
+        radius = model.game.body_preset.radius
+        axes.add_patch(plt.Circle((x, y), radius, color=COLOURS[robot.swarm], alpha=0.9))
+        axes.plot([x, x + radius * row["forward_x"]], [y, y + radius * row["forward_y"]], color="white")
+        if robot.carrying:
+            axes.plot(x, y, "o", color="black")
+    axes.set(xlim=(-arena.half, arena.half), ylim=(-arena.half, arena.half), aspect="equal")
+    axes.set(xlabel="x (m)", ylabel="y (m)", title=f"t = {model.time:.0f} s")
+
+
+figure, axes = plt.subplots(figsize=(4.5, 4.5))
+draw_arena(model, axes)
+
+# %% [markdown]
+# Play on to the end. What the model sampled on the way is in Mesa's DataCollector.
+
+# %%
+model.play()
+samples = model.datacollector.get_model_vars_dataframe()
+samples.tail(3)
+
+# %%
+figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.5), layout="constrained")
+for swarm, colour in enumerate(COLOURS, 1):
+    left.plot(samples["time"], samples[f"pucks_{swarm}"], color=colour, label=f"S{swarm}")
+    right.plot(samples["time"], samples[f"share_a_{swarm}"], color=colour, label=f"S{swarm}")
+left.set(xlabel="time (s)", ylabel="pucks deposited")
+right.set(xlabel="time (s)", ylabel="share of time in conflict", ylim=(0, 1))
+left.legend()
+right.legend();
+
+# %% [markdown]
+# The result of a game is a row for each swarm: pucks, the difference to all others (SUD), robot-seconds of
+# conflicts within the swarm and with others, and of the program.
+
+# %%
+pd.DataFrame(model.results()).set_index("swarm").T
+
+# %% [markdown]
+# Which of the two pays depends on the crowd. Six games of 300 s at each of three densities:
+
+# %%
+rows = []
+for n in (10, 30, 50):
+    for seed in range(6):
+        game = ForagingModel(n=n, policies="avoid,attack", seed=seed, duration=300, record="")
+        game.play()
+        rows += [{"N": n, "policy": row["policy"], "pucks": row["pucks"]} for row in game.results()]
+
+figure, axes = plt.subplots(figsize=(5, 3.5))
+palette = dict(zip(("avoid", "attack"), COLOURS, strict=True))
+sns.pointplot(pd.DataFrame(rows), x="N", y="pucks", hue="policy", palette=palette, dodge=True, ax=axes)
+axes.set(xlabel="number of robots in all, N", ylabel="pucks in 300 s (mean, 95 %)");

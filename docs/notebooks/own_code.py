@@ -1,0 +1,97 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation: {extension: .py, format_name: percent}
+#   kernelspec: {display_name: Python 3, language: python, name: python3}
+# ---
+
+# %% [markdown]
+# # Your own policy, reward and selection rule
+#
+# A policy is a class in a file of your own. Its name, with the path, stands wherever a policy's name can
+# stand. The files here are in `docs/examples`; [Extend](../extending.md) tells what each class needs.
+
+# %%
+from functools import partial
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pandas as pd
+import seaborn as sns
+
+from agents.conformance import POLICY_CHECKS, REWARD_CHECKS, RULE_CHECKS
+from agents.outside import load_class
+from agents.policies import make_policy
+from model.plain import ForagingModel
+from model.recording import policy_rows
+
+EXAMPLES = "../examples"
+print(Path(EXAMPLES, "cautious.py").read_text())
+
+# %%
+CAUTIOUS = f"{EXAMPLES}/cautious.py:Cautious"
+model = ForagingModel(n=20, policies=f"avoid,{CAUTIOUS}(patience=2)", duration=300, seed=1)
+model.play()
+pd.DataFrame(model.results())[["swarm", "policy", "pucks", "conflicts_inter"]]
+
+# %% [markdown]
+# ## Check it
+#
+# What every policy, reward and rule must do is in `agents.conformance`: the same seed gives the same
+# choices, robots share no state, a copy goes on alike, and so on. A check that fails says what is wrong.
+
+# %%
+for check in POLICY_CHECKS:
+    check(partial(make_policy, CAUTIOUS))
+    print("passed:", check.__name__)
+
+# %% [markdown]
+# ## Compare it
+#
+# How patient should one be, in what crowd? Three seeds each; `patience=0` always fights.
+
+# %%
+rows = []
+for n in (16, 40):
+    for patience in (0, 1, 3, 9):
+        for seed in range(3):
+            game = ForagingModel(
+                n=n, policies=f"avoid,{CAUTIOUS}(patience={patience})", duration=200, seed=seed, record=""
+            )
+            game.play()
+            rows.append({"N": n, "patience": patience, "sud": game.results()[1]["sud"]})
+figure, axes = plt.subplots(figsize=(5, 3.5))
+sns.pointplot(pd.DataFrame(rows), x="patience", y="sud", hue="N", palette="deep", dodge=True, ax=axes)
+axes.axhline(0, color="grey", linewidth=1)
+axes.set(ylabel="pucks ahead of the avoiding swarm");
+
+# %% [markdown]
+# ## A reward and a rule
+#
+# A learner takes both by their texts, and so does any other policy that hands them on.
+
+# %%
+print(Path(EXAMPLES, "haste.py").read_text())
+
+# %%
+HASTE, EPSILON = (f"{EXAMPLES}/haste.py:{name}" for name in ("Haste", "EpsilonGreedy"))
+for check in REWARD_CHECKS:
+    check(load_class("reward", HASTE))
+for check in RULE_CHECKS:
+    check(load_class("rule", EPSILON))
+
+LEARNERS = {
+    "WLU, UCB": "inter-learner",
+    "Haste, UCB": f"inter-learner(reward='{HASTE}')",
+    "Haste, ε-greedy": f"inter-learner(reward='{HASTE}', rule='{EPSILON}')",
+}
+rows = []
+for name, text in LEARNERS.items():
+    for seed in range(2):
+        game = ForagingModel(
+            n=30, policies=f"attack,{text}", learning=1000, duration=100, seed=seed, record=""
+        )
+        game.play()
+        learned = policy_rows(game)[0]["attack_share"]
+        rows.append({"learner": name, "learned to attack": learned, "pucks": game.pucks[1]})
+pd.DataFrame(rows).groupby("learner").mean()

@@ -1,0 +1,82 @@
+"""``report``: one HTML file on what a results directory holds."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, TypeVar
+
+import typer
+
+from agents.errors import InputError
+from scenarios.catalogue import CATALOGUE, TABLES
+
+if TYPE_CHECKING:
+    from model.arena import Arena
+
+_Step = TypeVar("_Step")
+
+
+def report(
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Where `kswarms run` wrote its results.")],
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The report. [default: DIR/report.html]")
+    ] = None,
+    files: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR", help="Also each figure as PNG and SVG, each table as CSV, Markdown and HTML."
+        ),
+    ] = None,
+    findings: Annotated[
+        Path | None,
+        typer.Option(metavar="TOML", help="Findings of your own, judged with those of the thesis."),
+    ] = None,
+    colour_blind: Annotated[
+        bool, typer.Option("--colour-blind", help="Colours of swarms that everybody tells apart.")
+    ] = False,
+) -> None:
+    """Write figures, tables and verdicts of all results into one HTML file that needs no network."""
+    from analysis.findings import FINDINGS, load
+    from analysis.report import Planned
+    from analysis.report import report as report_on
+
+    path = out or directory / "report.html"
+    if out is not None and not path.parent.is_dir():
+        raise InputError("out", str(path), "must be a file in a directory that exists")
+    own = load(findings) if findings is not None else ()
+    plan = {
+        name: Planned(
+            scenario.title,
+            tuple(condition.name for condition in scenario.conditions),
+            scenario.densities,
+            scenario.seeds,
+        )
+        for name, scenario in CATALOGUE.items()
+    }
+    whole = report_on(
+        directory,
+        plan,
+        TABLES,
+        findings=(*FINDINGS, *own),
+        places_of=_arena,
+        safe=colour_blind,
+        progress=_progress,
+    )
+    if files is not None:
+        typer.echo(f"files:  {files} ({whole.write_files(files)} files)")
+    whole.write_page(path)
+    typer.echo(f"report: {path} ({path.stat().st_size / 1e6:.1f} MB)")
+
+
+def _arena(scenario: str, condition: str, n: int, seed: int) -> "Arena | None":
+    """Return where stations and bases are in a game of the catalogue, None in another."""
+    try:
+        return CATALOGUE[scenario].game(condition, n).arena(seed)
+    except (KeyError, InputError):
+        return None
+
+
+def _progress(steps: Sequence[_Step]) -> Iterable[_Step]:
+    from rich.console import Console
+    from rich.progress import track
+
+    return track(steps, "reporting", console=Console(stderr=True), transient=True)

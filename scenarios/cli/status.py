@@ -1,0 +1,79 @@
+"""``status`` and ``replay``: what a directory of results holds, and one of its runs again."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from scenarios.cli.progress import clock
+
+Directory = Annotated[Path, typer.Argument(metavar="DIR", help="What `kswarms run --out` wrote.")]
+
+
+def status(directory: Directory) -> None:
+    """Tell what is done, what failed and why, what is missing, and what it took."""
+    from scenarios.ledger import FILE, Ledger
+    from scenarios.overview import by_scenario, codes, failures, in_all
+    from scenarios.study import holder, replay_command
+
+    with Ledger(directory / FILE) as ledger:
+        heads = ("scenario", "done", "failed", "missing", "CPU time")
+        rows = [(name, *_cells(counts)) for name, counts in by_scenario(ledger).items()]
+        rows.append(("runs, each once", *_cells(in_all(ledger))))
+        widths = [max(len(row[k]) for row in (heads, *rows)) for k in range(len(heads))]
+        for row in (heads, *rows):
+            name, *cells = (cell.rjust(width) for cell, width in zip(row, widths, strict=True))
+            typer.echo("  ".join([name.strip().ljust(widths[0]), *cells]))
+        typer.echo()
+        sessions = ledger.sessions()
+        typer.echo(f"sessions: {len(sessions)}, the first of {sessions[0]['started'] if sessions else '–'}")
+        for code, runs in codes(ledger).items():
+            typer.echo(f"played by: kswarms {code}, {runs} runs")
+        if user := holder(directory):
+            typer.echo(f"in use by: {user}")
+        for failed in failures(ledger):
+            run, scenario, condition, n, seed = failed.point
+            label = f"{scenario} {condition}".strip()
+            typer.echo(f"\nfailed: {label}, n={n}, seed={seed}: {failed.error}")
+            for line in _last_call(failed.trace):
+                typer.echo(f"  {line}")
+            typer.echo(f"  again: {replay_command(directory, run)}")
+
+
+def replay(
+    directory: Directory,
+    wanted: Annotated[str, typer.Argument(metavar="RUN", help="A run of its tables: the column `run`.")],
+) -> int:
+    """Play one run again, print what comes out of it, and tell whether DIR has the same. Write nothing."""
+    from rich.pretty import pprint
+
+    from scenarios.ledger import FILE, Ledger
+    from scenarios.runner import name_of, play
+
+    with Ledger(directory / FILE) as ledger:
+        run = ledger.run(wanted)
+        kept = ledger.outcome(wanted)
+    typer.echo(name_of(run))
+    outcome = play(run)
+    for row in (*outcome.swarms, *outcome.policies):
+        pprint(row, expand_all=False)
+    if kept is None:
+        typer.echo(f"{directory} has no results of it")
+        return 0
+    if kept == (outcome.swarms, outcome.policies):
+        typer.echo(f"the same as in {directory}")
+        return 0
+    typer.echo(f"kswarms: {directory} has other results of it: they were played by other code", err=True)
+    return 1
+
+
+def _cells(counts: dict[str, tuple[int, float]]) -> tuple[str, ...]:
+    numbers = (str(counts.get(status, (0, 0.0))[0]) for status in ("done", "failed", "missing"))
+    return (*numbers, clock(sum(seconds for _, seconds in counts.values())))
+
+
+def _last_call(trace: str) -> list[str]:
+    """Return where a traceback ends: the file and line, and what stands there."""
+    lines = trace.splitlines()
+    calls = [k for k, line in enumerate(lines) if line.startswith("  File ")]
+    return [line.strip() for line in lines[calls[-1] : calls[-1] + 2]] if calls else []

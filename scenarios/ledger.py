@@ -1,0 +1,333 @@
+"""The ledger of a study: what was asked for, what came of it, in a SQLite file that survives any death.
+
+A run is a row under its digest, so it is played once whoever asks for it; the curves that it belongs to
+are kept apart, one row for each point. Each run is committed by itself, by the one process that writes.
+"""
+
+import json
+import sqlite3
+from collections.abc import Generator, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final, NamedTuple, Self
+
+from agents.errors import InputError
+from model.game import Game
+from scenarios.runner import Failure, Outcome
+from scenarios.runs import Run, code_version, digest, package_version
+
+FILE: Final = "ledger.sqlite"
+"""Name of the file in the directory of a study."""
+
+_FORMAT: Final = 1
+_APPLICATION: Final = 0x6B73776D  # "kswm": by it a ledger is told from other SQLite files
+_TABLES: Final = """
+CREATE TABLE games (id INTEGER PRIMARY KEY, description TEXT NOT NULL UNIQUE);
+CREATE TABLE runs (
+    run TEXT PRIMARY KEY, game INTEGER NOT NULL REFERENCES games, seed INTEGER NOT NULL,
+    version TEXT NOT NULL, status TEXT NOT NULL DEFAULT 'missing', code TEXT, seconds REAL,
+    swarms TEXT, policies TEXT, error TEXT, traceback TEXT, replay TEXT
+);
+CREATE TABLE scenarios (id TEXT PRIMARY KEY, toml TEXT NOT NULL);
+CREATE TABLE curves (
+    scenario TEXT, condition TEXT, description TEXT NOT NULL, PRIMARY KEY (scenario, condition)
+) WITHOUT ROWID;
+CREATE TABLE points (
+    scenario TEXT, condition TEXT, n INTEGER, seed INTEGER, run TEXT NOT NULL REFERENCES runs,
+    PRIMARY KEY (scenario, condition, n, seed)
+) WITHOUT ROWID;
+CREATE INDEX points_of_run ON points (run);
+CREATE TABLE records (run TEXT REFERENCES runs, name TEXT, rows BLOB NOT NULL, PRIMARY KEY (run, name));
+CREATE TABLE sessions (id INTEGER PRIMARY KEY, about TEXT NOT NULL);
+"""
+
+
+class Point(NamedTuple):
+    """Where a run stands in a figure: its labels in the tables of results."""
+
+    run: str
+    scenario: str
+    condition: str
+    n: int
+    seed: int
+
+
+class Ledger:
+    """An open ledger.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    new : bool
+        Whether to make it if there is none.
+
+    Raises
+    ------
+    InputError
+        If there is no ledger of this form.
+    OSError
+        From every method: if the file cannot be read or written; what was committed stays.
+    """
+
+    def __init__(self, path: Path, new: bool = False) -> None:
+        self.path = path
+        if not new and not path.is_file():
+            raise InputError("results", str(path.parent), f"must be a directory with a {FILE} of kswarms")
+        try:
+            self._db = sqlite3.connect(path)
+            self._open(new)
+        except sqlite3.DatabaseError as error:
+            raise InputError("results", str(path), f"must be a ledger of kswarms ({error})") from error
+
+    def _open(self, new: bool) -> None:
+        application, form = (
+            self._db.execute(f"PRAGMA {name}").fetchone()[0] for name in ("application_id", "user_version")
+        )
+        empty = not self._db.execute("SELECT 1 FROM sqlite_master").fetchone()
+        if not (empty and new) and (application, form) != (_APPLICATION, _FORMAT):
+            raise sqlite3.DatabaseError(
+                f"form {form} where {_FORMAT} is known" if application else "it is not"
+            )
+        if new:
+            self._db.execute("PRAGMA journal_mode = WAL")
+            self._db.execute("PRAGMA synchronous = NORMAL")
+        if empty:
+            self._db.executescript(
+                f"BEGIN; {_TABLES} PRAGMA application_id = {_APPLICATION};"
+                f" PRAGMA user_version = {_FORMAT}; COMMIT;"
+            )
+
+    def close(self) -> None:
+        """Close the file."""
+        self._db.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self.close()
+
+    # -------------------------------------------------------------------------------------- what is asked for
+
+    def plan(
+        self, scenarios: dict[str, str], curves: dict[tuple[str, str], str], runs: Sequence[Run]
+    ) -> None:
+        """Enter runs that are asked for, and the scenarios that ask.
+
+        Parameters
+        ----------
+        scenarios : dict of str to str
+            TOML of each scenario by its id.
+        curves : dict of (scenario, condition) to str
+            What each curve is, as `scenarios.runs.describe_curve` gives it.
+        runs : sequence of Run
+            What is asked for.
+
+        Raises
+        ------
+        InputError
+            If the ledger has runs of another version, or of a curve that was described otherwise; then
+            nothing is entered.
+        """
+        with self._transaction():
+            self._refuse_mixtures(curves, runs)
+            self._db.executemany("INSERT OR REPLACE INTO scenarios VALUES (?, ?)", scenarios.items())
+            self._db.executemany(
+                "INSERT OR REPLACE INTO curves VALUES (?, ?, ?)",
+                ((*curve, text) for curve, text in curves.items()),
+            )
+            games = {run.game: run.game.model_dump_json() for run in runs}
+            self._db.executemany(
+                "INSERT OR IGNORE INTO games (description) VALUES (?)", ((text,) for text in games.values())
+            )
+            self._db.executemany(
+                "INSERT OR IGNORE INTO runs (run, game, seed, version)"
+                " SELECT ?, id, ?, ? FROM games WHERE description = ?",
+                ((run.digest, run.seed, package_version(), games[run.game]) for run in runs),
+            )
+            self._db.executemany(
+                "INSERT OR REPLACE INTO points VALUES (?, ?, ?, ?, ?)",
+                ((*label, run.n, run.seed, run.digest) for run in runs for label in run.labels),
+            )
+
+    def _refuse_mixtures(self, curves: dict[tuple[str, str], str], runs: Sequence[Run]) -> None:
+        directory = str(self.path.parent)
+        for (version,) in self._db.execute("SELECT DISTINCT version FROM runs"):
+            if version != package_version():
+                raise InputError(
+                    "out",
+                    directory,
+                    f"has runs of kswarms {version}, this is {package_version()}; name another",
+                )
+        known = {
+            (scenario, condition): text
+            for scenario, condition, text in self._db.execute(
+                "SELECT scenario, condition, description FROM curves"
+            )
+        }
+        for (scenario, condition), text in curves.items():
+            if known.get((scenario, condition), text) != text:
+                curve = f"{scenario} {condition}".strip()
+                raise InputError(
+                    "out",
+                    directory,
+                    f"has runs of a {curve} described otherwise; name another, or give it another id",
+                )
+
+    def unfinished(self, runs: Iterable[Run], records: Sequence[str]) -> list[Run]:
+        """Return the runs that are not done yet, or lack one of the recorded tables asked for."""
+        done = {run for (run,) in self.query("SELECT run FROM runs WHERE status = 'done'")}
+        for name in records:
+            done &= {run for (run,) in self.query("SELECT run FROM records WHERE name = ?", name)}
+        return [run for run in runs if run.digest not in done]
+
+    # ------------------------------------------------------------------------------------------ what came out
+
+    def add(
+        self, run: Run, result: Outcome | Failure, seconds: float, records: dict[str, bytes], replay: str
+    ) -> None:
+        """Enter what came out of a run that was planned.
+
+        Parameters
+        ----------
+        run : Run
+            What was played.
+        result : Outcome or Failure
+            What came out.
+        seconds : float
+            CPU time (s).
+        records : dict of str to bytes
+            Recorded tables by name, each packed.
+        replay : str
+            The command that plays it again.
+        """
+        came_out: tuple[str | None, ...]
+        if isinstance(result, Failure):
+            status, came_out = "failed", (None, None, result.error, result.trace)
+        else:
+            status, came_out = "done", (json.dumps(result.swarms), json.dumps(result.policies), None, None)
+        with self._transaction():
+            self._db.execute(
+                "UPDATE runs SET status = ?, code = ?, seconds = ?, swarms = ?, policies = ?, error = ?,"
+                " traceback = ?, replay = ? WHERE run = ?",
+                (status, code_version(), seconds, *came_out, replay, run.digest),
+            )
+            self._db.executemany(
+                "INSERT OR REPLACE INTO records VALUES (?, ?, ?)",
+                ((run.digest, name, rows) for name, rows in records.items()),
+            )
+
+    def results(self, name: str) -> Iterator[tuple[Point, list[dict[str, Any]]]]:
+        """Yield the rows of ``swarms`` or ``policies`` of each point that is done, in their order."""
+        for *point, rows in self.query(
+            f"SELECT run, scenario, condition, n, points.seed, {name} FROM points JOIN runs USING (run)"
+            f" WHERE status = 'done' AND {name} != '[]' ORDER BY scenario, condition, n, points.seed"
+        ):
+            yield Point(*point), json.loads(rows)
+
+    def records(self, name: str) -> Iterator[tuple[str, bytes]]:
+        """Yield a recorded table, packed, of every run that is done and has it, in the order of digests."""
+        yield from self.query(
+            "SELECT run, rows FROM records JOIN runs USING (run)"
+            " WHERE name = ? AND status = 'done' ORDER BY run",
+            name,
+        )
+
+    # --------------------------------------------------------------------------------------------- looking in
+
+    def run(self, name: str) -> Run:
+        """Return the run of a digest.
+
+        Raises
+        ------
+        InputError
+            If there is none, or playing it now would be playing something else.
+        """
+        row = next(
+            self.query("SELECT description, seed FROM games JOIN runs ON game = id WHERE run = ?", name),
+            None,
+        )
+        if row is None:
+            raise InputError(
+                "run", name, f"must be a run of {self.path.parent}: see the column run of its tables"
+            )
+        labels = tuple(self.query("SELECT scenario, condition FROM points WHERE run = ?", name))
+        run = Run(name, Game(**json.loads(row[0])), row[1], labels)
+        if digest(run.game, run.seed) != name:
+            raise InputError(
+                "run", name, "is of another version of kswarms, or what its game loads has changed"
+            )
+        return run
+
+    def outcome(self, name: str) -> tuple[list[dict[str, Any]], list[dict[str, Any]]] | None:
+        """Return the rows of swarms and of policies of a run, or None if it is not done."""
+        row = next(
+            self.query("SELECT swarms, policies FROM runs WHERE run = ? AND status = 'done'", name), None
+        )
+        return (json.loads(row[0]), json.loads(row[1])) if row else None
+
+    # ----------------------------------------------------------------------------------------------- sessions
+
+    def begin_session(self, about: dict[str, Any]) -> int:
+        """Enter a session, and return its number."""
+        with self._transaction():
+            number = self._db.execute(
+                "INSERT INTO sessions (about) VALUES (?)", (json.dumps(about),)
+            ).lastrowid
+        assert number is not None
+        return number
+
+    def update_session(self, number: int, **changes: Any) -> None:
+        """Add to what is known of a session."""
+        ((about,),) = self.query("SELECT about FROM sessions WHERE id = ?", number)
+        with self._transaction():
+            self._db.execute(
+                "UPDATE sessions SET about = ? WHERE id = ?",
+                (json.dumps(json.loads(about) | changes), number),
+            )
+
+    def sessions(self) -> list[dict[str, Any]]:
+        """Return what is known of every session, the first first."""
+        return [json.loads(about) for (about,) in self.query("SELECT about FROM sessions ORDER BY id")]
+
+    def scenarios(self) -> dict[str, str]:
+        """Return the TOML of each scenario, as it was asked for last, by its id."""
+        return dict(self.query("SELECT id, toml FROM scenarios ORDER BY id"))
+
+    @contextmanager
+    def _transaction(self) -> Generator[None, None, None]:
+        with _as_os_error(self.path), self._db:
+            yield
+
+    def query(self, sql: str, *values: object) -> Iterator[Any]:
+        """Yield the rows that an SQL query finds."""
+        with _as_os_error(self.path):
+            yield from self._db.execute(sql, values)
+
+
+@contextmanager
+def _as_os_error(path: Path) -> Generator[None, None, None]:
+    try:
+        yield
+    except sqlite3.Error as error:
+        raise OSError(f"{path}: {error}") from error
+
+
+def find_run(directory: Path, name: str) -> Run:
+    """Return the run of a digest from the ledger of a directory of results.
+
+    Parameters
+    ----------
+    directory : Path
+        What ``kswarms run --out`` wrote.
+    name : str
+        The digest, as the column ``run`` of the tables has it.
+
+    Raises
+    ------
+    InputError
+        If there is no ledger, no such run in it, or playing it now would be playing something else.
+    """
+    with Ledger(directory / FILE) as ledger:
+        return ledger.run(name)

@@ -1,0 +1,99 @@
+"""Processes on this machine that play runs, replaced by new ones now and then, and when one dies."""
+
+import os
+import signal
+import threading
+from collections import deque
+from collections.abc import Generator, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from multiprocessing import active_children, get_context, parent_process
+from typing import Any, Final
+
+from scenarios.runner import Failure, Outcome, Result, play_through
+from scenarios.runs import Run
+
+GAMES_A_WORKER: Final = 1000
+"""Games after which worker processes are replaced by new ones."""
+
+TRIES: Final = 3
+"""A run during which a worker process died is tried so often in all."""
+
+
+def in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[Result, None, None]:
+    """Play runs in processes of this machine.
+
+    A process that is killed breaks the executor, and which of the runs then played killed it (that took
+    too much memory, say) cannot be told. So each of these is tried again, alone.
+
+    Parameters
+    ----------
+    waiting, jobs, record
+        As for `scenarios.runner.play_through`.
+    """
+    # Fresh workers for each portion bound what Mesa leaves behind in a process. The executor's own
+    # `max_tasks_per_child` hangs in Python 3.11 (CPython issue 115634).
+    while waiting:
+        portion = deque(waiting.popleft() for _ in range(min(len(waiting), jobs * GAMES_A_WORKER)))
+        suspects = []
+        for run, result, seconds in _in_fresh_processes(portion, jobs, record):
+            if result is None:
+                suspects.append(run)
+            else:
+                yield run, result, seconds
+        waiting.extendleft(reversed(portion))
+        for run in suspects:
+            yield _play_alone(run, record)
+
+
+def _play_alone(run: Run, record: str) -> Result:
+    for _ in range(TRIES - 1):
+        for _, result, seconds in list(_in_fresh_processes(deque([run]), 1, record)):
+            if result is not None:
+                return run, result, seconds
+    return run, Failure(f"a worker process died during it, {TRIES} times: killed, or short of memory?"), 0.0
+
+
+def _in_fresh_processes(
+    waiting: deque[Run], jobs: int, record: str
+) -> Generator[tuple[Run, Outcome | Failure | None, float], None, None]:
+    others = set(active_children())
+    executor = _Processes(jobs, get_context("spawn"), _follow_parent)
+    try:
+        yield from play_through(executor, waiting, jobs, record)
+    except BaseException:
+        # Ctrl-C, or nobody wants the rest: do not wait for games that may take minutes.
+        for worker in set(active_children()) - others:
+            worker.terminate()
+        raise
+    finally:
+        executor.shutdown(cancel_futures=True)
+
+
+class _Processes(ProcessPoolExecutor):
+    def submit(self, *arguments: Any, **options: Any) -> Future[Any]:
+        # Submitting starts the workers, and they inherit the mask: Ctrl-C, which a terminal sends to them
+        # too, is left to this process from their first moment on.
+        with _interrupts_held():
+            return super().submit(*arguments, **options)
+
+
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+
+
+def _follow_parent() -> None:
+    """Let this worker end when its parent does, even if that is killed."""
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

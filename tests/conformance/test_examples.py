@@ -1,0 +1,64 @@
+"""The classes of the documentation pass what is asked of every class of a user's own."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import pytest
+
+from agents.conformance import POLICY_CHECKS, REWARD_CHECKS, RULE_CHECKS
+from agents.outside import load_class
+from agents.policies import make_policy
+from agents.rewards import WLU
+from agents.selection import Greedy
+
+Check = Callable[[Any], None]
+POLICIES = [
+    "docs/examples/cautious.py:Cautious",
+    "docs/examples/cautious.py:Cautious(patience=0)",
+    "docs/examples/win_stay.py:WinStay(enough=4.0)",
+    "learner(reward='docs/examples/haste.py:Haste(cost=0.1)', rule='docs/examples/haste.py:EpsilonGreedy')",
+]
+
+
+@pytest.mark.parametrize("text", POLICIES)
+@pytest.mark.parametrize("check", POLICY_CHECKS)
+def test_a_policy_passes_every_check(text: str, check: Check) -> None:
+    check(partial(make_policy, text))
+
+
+@pytest.mark.parametrize("check", REWARD_CHECKS)
+def test_a_reward_passes_every_check(check: Check) -> None:
+    check(partial(load_class("reward", "docs/examples/haste.py:Haste"), cost=0.2))
+
+
+@pytest.mark.parametrize("check", RULE_CHECKS)
+def test_a_rule_passes_every_check(check: Check) -> None:
+    check(load_class("rule", "docs/examples/haste.py:EpsilonGreedy"))
+
+
+class Restless(WLU):
+    """Has a state that a frozen description cannot have."""
+
+    def of(self, *conflict: Any) -> float:
+        object.__setattr__(self, "delta", self.delta / 2 if isinstance(self.delta, float) else self.delta)
+        return super().of(*conflict)
+
+
+class Unequal(Greedy):
+    """Is itself alone."""
+
+    def __eq__(self, other: object) -> bool:
+        return self is other
+
+    __hash__ = Greedy.__hash__
+
+
+def test_a_failed_check_says_what_is_wrong() -> None:
+    rewards, rules = ({check.__name__: check for check in some} for some in (REWARD_CHECKS, RULE_CHECKS))
+    with pytest.raises(AssertionError, match="it is changed by its use"):
+        rewards["check_it_is_frozen"](Restless)
+    with pytest.raises(AssertionError, match=r"of\(.*\) is another"):
+        rewards["check_the_same_conflict_brings_the_same"](Restless)
+    with pytest.raises(AssertionError, match="another is not equal"):
+        rules["check_copies_are_equal_and_choose_alike"](Unequal)

@@ -1,0 +1,268 @@
+"""The command `report`: what it covers, what it refuses, and what a browser makes of it."""
+
+import os
+import shutil
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from benchmarks import report as study
+from scenarios.catalogue import CATALOGUE
+from scenarios.cli import invoke
+from tests.unit.test_analysis_figures import runs_of
+from tests.unit.test_analysis_records import MET, robots
+from tests.unit.test_analysis_report import Page
+
+if TYPE_CHECKING:
+    from selenium.webdriver import Chrome
+
+# A curve for each swarm, panels, a table of the source, three swarms, the comparison with ARGoS.
+SHOWN = ("fig-6.1c", "fig-6.3", "fig-6.4a", "fig-7.10", "argos-avoid-attack")
+OWN = """
+[[findings]]
+id = "mine"
+statement = "Attackers score more."
+[findings.claim]
+kind = "compare"
+left = { scenario = "fig-6.1c", swarm = 2 }
+relation = ">"
+right = { scenario = "fig-6.1c", swarm = 1 }
+over = "mean over N"
+"""
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a directory with made-up runs of some scenarios and one game with its records."""
+    directory = tmp_path_factory.mktemp("my <results>")
+    study.write_study(directory, [CATALOGUE[name] for name in SHOWN], densities=3, seeds=7)
+    return directory
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a directory with the records of two short games of a scenario with a learner."""
+    from scenarios.runner import play_all
+    from scenarios.runs import expand
+    from scenarios.tables import tabulate, write
+
+    scenario = CATALOGUE["fig-6.4b"]
+    condition = scenario.conditions[0].replace(learning=30, duration=30)
+    short = scenario.replace(conditions=(condition,), densities=(10,), seeds=2)
+    directory = tmp_path_factory.mktemp("recorded")
+    played = play_all(expand([short]), record="conflicts,robots")
+    write(directory, [tabulate(run, outcome) for run, outcome in played])
+    return directory
+
+
+@pytest.fixture(scope="module")
+def pages(results: Path, recorded: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """Return the reports on both directories, made once."""
+    directory = tmp_path_factory.mktemp("pages")
+    made = {"results": directory / "results.html", "recorded": directory / "recorded.html"}
+    for path, source in zip(made.values(), (results, recorded), strict=True):
+        assert invoke(["report", str(source), "--out", str(path)]) == 0
+    return made
+
+
+def test_a_report_covers_what_the_directory_holds(
+    results: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own, out = tmp_path / "own.toml", tmp_path / "page.html"
+    own.write_text(OWN)
+    words = [str(results), "--out", str(out), "--findings", str(own), "--files", str(tmp_path / "files")]
+    assert invoke(["report", *words]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[:2] for line in lines] == [
+        ["files:", str(tmp_path / "files")],
+        ["report:", str(out)],
+    ]
+    html = out.read_text()
+    page = Page(html)
+    assert set(SHOWN) <= set(page.ids)
+    assert {"table-6.1", "argos", "findings", "what-is-missing", "provenance"} <= set(page.ids)
+    assert "fig-6.2" not in page.ids
+    assert "not played: fig-6.1a, fig-6.1b, fig-6.2," in html
+    assert "N = 20, 26, 30, 36, 40, 46, 50; seeds (7 of 20)" in html
+    assert "Report on my &lt;results&gt;" in html
+    assert len(page.ids) == len(set(page.ids))
+    assert all(link[1:] in page.ids for link in page.links if link.startswith("#"))
+    assert all(address.startswith(("#", "data:")) for address in page.addresses)
+    assert all(picture["alt"] for picture in page.pictures)
+    # Two of each scenario, one more of each learner.
+    assert len(page.pictures) == 2 * len(SHOWN) + 2
+    assert "Attackers score more." in html
+    assert "published" in html
+    files = {path.name for path in (tmp_path / "files").iterdir()}
+    assert {
+        "fig-6.1c.svg",
+        "fig-6.1c-source.png",
+        "fig-6.4a-learned.svg",
+        "table-6.1.md",
+        "argos.csv",
+    } <= files
+
+
+@pytest.mark.slow
+def test_the_same_results_give_the_same_report_in_other_colours_if_asked(
+    recorded: Path, pages: dict[str, Path], tmp_path: Path
+) -> None:
+    first = pages["recorded"].read_bytes()
+    assert invoke(["report", str(recorded)]) == 0
+    written = recorded / "report.html"
+    assert written.read_bytes() == first
+    assert invoke(["report", str(recorded), "--colour-blind", "--out", str(tmp_path / "other.html")]) == 0
+    assert (tmp_path / "other.html").read_bytes() != first
+
+
+def test_help_has_an_example(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["report", "--help"]) == 0
+    assert "Example: kswarms report results" in capsys.readouterr().out
+
+
+def test_records_have_their_chapters(pages: dict[str, Path]) -> None:
+    page = Page(pages["recorded"].read_text())
+    for part in ("network-fig-6-4b", "emergence-fig-6-4b", "robots-fig-6-4b", "map-fig-6-4b"):
+        assert part in page.ids
+    assert len(page.pictures) == 3 + 2 + 2 + 1 + 1
+
+
+def test_scenarios_of_ones_own_have_a_chapter_of_their_own(tmp_path: Path) -> None:
+    runs = runs_of("hunt", densities=[16], seeds=1)
+    runs.to_parquet(tmp_path / "runs.parquet")
+    MET.assign(run=runs["run"].iloc[0]).to_parquet(tmp_path / "conflicts.parquet")
+    robots()[:1].assign(run=runs["run"].iloc[0]).to_parquet(tmp_path / "robots.parquet")  # it does not learn
+    assert invoke(["report", str(tmp_path)]) == 0
+    page = Page((tmp_path / "report.html").read_text())
+    assert {"other-scenarios", "hunt", "network-hunt", "map-hunt"} <= set(page.ids)
+    assert len(page.pictures) == 2 + 2 + 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        ("nowhere", "results='nowhere': must be a directory that `kswarms run` wrote"),
+        ("empty", "results='empty': must be a directory that holds runs.parquet"),
+        ("broken", "results='broken/runs.parquet': must be a readable Parquet file"),
+        ("corrupt", "results='corrupt/conflicts.parquet': must be a readable Parquet file"),
+        (
+            "good --out nowhere/page.html",
+            "out='nowhere/page.html': must be a file in a directory that exists",
+        ),
+        ("good --out empty", "out='empty': must be a place that can be written"),
+        ("good --findings none.toml", "findings='none.toml': must be a readable TOML file"),
+        ("good --files good/runs.parquet", "files='good/runs.parquet': must be a folder"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line_and_nothing_is_written(
+    arguments: str,
+    line: str,
+    results: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("empty", "broken", "corrupt", "good"):
+        Path(name).mkdir()
+    Path("broken/runs.parquet").write_bytes(b"PAR1")
+    for name in ("corrupt", "good"):
+        study.write_study(Path(name), [CATALOGUE["fig-6.1a"]], densities=2, seeds=1)
+    Path("corrupt/conflicts.parquet").write_bytes(b"PAR1")
+    before = sorted(tmp_path.rglob("*"))
+    assert invoke(["report", *arguments.split()]) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err.splitlines()[-1].startswith(f"kswarms: {line}")
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+# ------------------------------------------------------------------------------------------------- browser
+
+CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator["Chrome"]:
+    """Start a Chromium without a window, that writes down what pages complain of."""
+    if CHROMIUM is None or DRIVER is None:
+        pytest.skip("needs chromium and chromedriver: apt-get install chromium chromium-driver")
+    from selenium import webdriver
+
+    options = webdriver.ChromeOptions()
+    options.binary_location = CHROMIUM
+    for argument in ("headless=new", "disable-gpu", "disable-dev-shm-usage", "hide-scrollbars"):
+        options.add_argument(f"--{argument}")
+    if sys.platform == "linux" and os.geteuid() == 0:
+        options.add_argument("--no-sandbox")  # Chromium's sandbox does not start for root
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
+    try:
+        yield driver
+    finally:
+        driver.quit()
+
+
+def open_at(browser: "Chrome", path: Path, width: int, dark: bool = False) -> None:
+    size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 500}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [scheme]})
+    browser.get(path.resolve().as_uri())
+
+
+def problems(browser: "Chrome") -> dict[str, Any]:
+    """Return what is wrong with the page that is open; nothing of it should be."""
+    found: dict[str, Any] = browser.execute_script("""
+        const page = document.documentElement;
+        return {
+            broken: [...document.images].filter(i => !(i.complete && i.naturalWidth > 0)).map(i => i.alt),
+            overflow: page.scrollWidth - page.clientWidth,  // innerWidth grows with the overflow
+            unlabelled: [...document.querySelectorAll("table")].filter(
+                t => !t.querySelector("thead th[scope=col]")).length,
+        };
+    """)
+    return found | {"console": browser.get_log("browser")}
+
+
+FINE = {"broken": [], "overflow": 0, "unlabelled": 0, "console": []}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("width", [1280, 390])
+@pytest.mark.parametrize("source", ["results", "recorded"])
+def test_a_browser_opens_the_report_without_complaint(
+    browser: "Chrome", source: str, width: int, pages: dict[str, Path]
+) -> None:
+    open_at(browser, pages[source], width)
+    assert problems(browser) == FINE
+    assert browser.execute_script("return document.images.length") > 5
+
+
+@pytest.mark.slow
+def test_the_page_follows_the_reader_into_the_dark(browser: "Chrome", pages: dict[str, Path]) -> None:
+    colours = []
+    for dark in (False, True):
+        open_at(browser, pages["recorded"], 1280, dark)
+        colours.append(browser.execute_script("return getComputedStyle(document.body).backgroundColor"))
+    assert colours == ["rgb(255, 255, 255)", "rgb(22, 24, 27)"]
+
+
+@pytest.mark.slow
+def test_a_broken_page_is_noticed(browser: "Chrome", tmp_path: Path) -> None:
+    path = tmp_path / "broken.html"
+    path.write_text(
+        "<!doctype html><meta name=viewport content='width=device-width, initial-scale=1'>"
+        "<link rel=icon href=data:,><img alt=gone src='data:image/png;base64,AAAA'>"
+        "<div style='width: 900px'>wide</div><table><tr><td>1</td></tr></table>"
+        "<script>console.error('oh')</script>"
+    )
+    open_at(browser, path, 390)
+    found = problems(browser)
+    assert found["broken"] == ["gone"]
+    assert found["overflow"] > 400
+    assert found["unlabelled"] == 1
+    assert "oh" in found["console"][-1]["message"]

@@ -1,0 +1,92 @@
+"""Code in a user's own file works wherever a policy is named: command line, workers, `mesa.batch_run`."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import mesa
+import pyarrow.parquet as pq
+import pytest
+
+from model.plain import ForagingModel
+from scenarios.cli import invoke
+
+EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
+TEXTS = [
+    "cautious.py:Cautious(patience=1)",
+    "code/win_stay.py:WinStay",
+    "inter-learner(reward='haste.py:Haste', rule='haste.py:EpsilonGreedy(epsilon=0.2)')",
+]
+SWEEP = """
+import json, sys
+import mesa
+from model.plain import ForagingModel
+
+if __name__ == "__main__":
+    sweep = json.loads(sys.argv[1])
+    rows = mesa.batch_run(
+        ForagingModel, sweep, number_processes=2, data_collection_period=-1, display_progress=False
+    )
+    print(json.dumps(rows))
+"""
+
+
+@pytest.fixture(autouse=True)
+def _in_a_users_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Go where a user has code and the package is not; workers find the package all the same."""
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(path or str(Path.cwd()) for path in sys.path))
+    monkeypatch.chdir(tmp_path)
+    Path("code").mkdir()
+    for name, where in (("cautious.py", ""), ("haste.py", ""), ("win_stay.py", "code")):
+        Path(where, name).write_text((EXAMPLES / name).read_text())
+    condition = """
+        [[conditions]]
+        name = "{}"
+        duration = 40
+        learning = 60
+        swarms = [{{ policy = "avoid" }}, {{ policy = "{}" }}]
+    """
+    curves = (condition.format(k, text) for k, text in enumerate(TEXTS))
+    head = "id = 'mine'\ntitle = 'Own code'\ndensities = [6]\nseeds = 1\n"
+    Path("mine.toml").write_text(head + "".join(curves))
+
+
+@pytest.mark.slow
+def test_the_command_line_plays_it_in_worker_processes_as_in_its_own() -> None:
+    tables = []
+    for jobs in ("1", "2"):
+        assert invoke(["run", "mine.toml", "--jobs", jobs, "--out", jobs, "--no-figures"]) == 0
+        tables.append(pq.read_table(Path(jobs, "runs.parquet")))
+    assert tables[0].equals(tables[1])
+    assert set(tables[0]["policy"].to_pylist()) == {"avoid", *TEXTS}
+    assert set(pq.read_table(Path("2", "policies.parquet"))["condition"].to_pylist()) == {"2"}
+
+
+def test_a_mistake_in_it_is_one_line_and_nothing_is_written(capsys: pytest.CaptureFixture[str]) -> None:
+    code = Path("cautious.py").read_text()
+    Path("cautious.py").write_text(code.replace("return self.flight", "return self.flee", 1))
+    assert invoke(["run", "mine.toml", "--out", "results"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "policy='cautious.py:Cautious': choose(1) raises AttributeError: " in line
+    assert "(cautious.py, line " in line
+    assert not Path("results").exists()
+
+
+@pytest.mark.slow
+def test_batch_run_sweeps_it_in_two_processes_as_in_one() -> None:
+    sweep = {"policies": [f"avoid,{text}" for text in TEXTS], "n": 8, "seed": [0, 1], "duration": 40.0}
+    here = mesa.batch_run(
+        ForagingModel, sweep, number_processes=1, data_collection_period=-1, display_progress=False
+    )
+    Path("sweep.py").write_text(SWEEP)
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "sweep.py", json.dumps(sweep)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert sorted(json.loads(done.stdout), key=lambda row: row["RunId"]) == json.loads(json.dumps(here))
+    assert {row["policies"] for row in here} == set(sweep["policies"])

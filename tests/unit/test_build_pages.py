@@ -1,0 +1,58 @@
+"""The hook that makes pages of the documentation: what it makes, and what it refuses."""
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+from mkdocs.exceptions import PluginError
+
+ROOT = Path(__file__).parents[2]
+spec = importlib.util.spec_from_file_location("build_pages", ROOT / "docs" / "build_pages.py")
+assert spec is not None
+assert spec.loader is not None
+pages = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(pages)
+
+
+@pytest.mark.parametrize(
+    "tag",
+    [
+        '<script src="https://unpkg.com/mermaid">',
+        '<link rel="stylesheet" href="//fonts.example/roboto.css">',
+        '<img alt="badge" src="http://example.org/badge.svg">',
+    ],
+)
+def test_a_page_that_loads_from_another_host_is_refused(tag: str) -> None:
+    with pytest.raises(PluginError, match="another host: <"):
+        pages.on_post_page(f"<html>{tag}</html>")
+
+
+def test_a_page_may_link_to_another_host() -> None:
+    page = '<a href="https://mesa.readthedocs.io">Mesa</a><img src="images/a.png"><script src="a"></script>'
+    assert pages.on_post_page(page) == page
+
+
+def test_the_reference_has_every_public_module() -> None:
+    page = pages.reference("agents")
+    for name in ("agents", "agents.policies", "agents.conformance", "agents.conformance.rules"):
+        assert f"\n::: {name}\n" in f"{page}\n"
+    assert "::: scenarios.cli.__main__" not in pages.reference("scenarios")
+
+
+@pytest.mark.slow
+def test_a_notebook_shows_what_came_out_and_may_not_fail(tmp_path: Path) -> None:
+    path = tmp_path / "small.py"
+    path.write_text(
+        "# %% [markdown]\n# # Title\n\n# %%\nprint('said')\n\n# %%\n6 * 7\n\n"
+        "# %%\nimport pandas as pd\npd.DataFrame({'a': [1]})\n\n"
+        "# %%\nimport matplotlib.pyplot as plt\nplt.plot([1, 2]);\n"
+    )
+    page, pictures = pages.notebook(path)
+    for part in ("# Title", "print('said')\n```", "```text\nsaid\n", "```text\n42\n```", "<td>1</td>"):
+        assert part in page
+    assert 'class="dataframe"' not in page
+    assert "![What the cell drew](small-1.png)" in page
+    assert pictures["small-1.png"].startswith(b"\x89PNG")
+    path.write_text("# %%\n1 / 0\n")
+    with pytest.raises(PluginError, match=r"small\.py fails: ZeroDivisionError: division by zero"):
+        pages.notebook(path)
