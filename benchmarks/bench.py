@@ -1,9 +1,10 @@
-"""What a game costs: CPU time beside a bare SimPy loop, growth with the robots, memory, time to a first game.
+"""What a game costs: CPU time beside a bare SimPy loop, growth, memory, time to a first game, its keeping.
 
 Run as a script it prints one table for each. Nothing depends on how long something takes; but every game that
 is timed must have done the work that a counted game of the same seed does, or `WorkError` ends the benchmark.
 """
 
+import os
 import statistics
 import subprocess
 import sys
@@ -11,14 +12,18 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 import mesa
+import pyarrow.parquet as pq
 import simpy
 from simpy.events import Event, Timeout
 
 from model.foraging import GameModel
 from model.plain import ForagingModel
+from scenarios.description import Condition, Scenario, SwarmRule
+from scenarios.study import Study
 
 MOST_TIMES_BARE: Final = 5.0
 LEAST_THROUGHPUT: Final = 80_000
@@ -26,6 +31,7 @@ LEAST_LEARNING_THROUGHPUT: Final = 60_000
 MOST_GROWTH: Final = 1.5
 MOST_MEMORY: Final = 300
 MOST_SECONDS_TO_GAME: Final = 5.0
+MOST_OVERHEAD: Final = 5.0
 CONTEXT: Final = "ARGoS 3 without simulated sensors 8,475; Enki with sensors 53,700"
 
 
@@ -203,6 +209,47 @@ def seconds_to_game(n: int) -> float:
     return took
 
 
+def overhead(runs: int, jobs: int) -> list[str]:
+    """Return a line of the table of what running and storing costs, besides the games of 1 s.
+
+    CPU time of all processes, their start included, less that of the games; and what the process that stores
+    has grown by from the first tenth of the runs to the last run.
+    """
+    swarms = (SwarmRule(policy="avoid"), SwarmRule(policy="attack"))
+    tiny = Scenario(
+        id="tiny",
+        title="Tiny games",
+        densities=(2,),
+        seeds=runs,
+        conditions=(Condition(swarms=swarms, duration=1.0),),
+    )
+    games, resident = 0.0, []
+    before = sum(os.times()[:4])
+    with tempfile.TemporaryDirectory() as directory:
+        with Study(Path(directory)) as study:
+            for done, (_, _, seconds) in enumerate(study.play(study.plan([tiny]), jobs), 1):
+                games += seconds
+                if done in (runs // 10, runs):
+                    resident.append(_resident())
+        stored = pq.read_metadata(study.tables[0]).num_rows
+    if stored != 2 * runs:
+        raise WorkError(f"{stored} rows stored of {runs} runs")
+    cost = sum(os.times()[:4]) - before - games
+    return [
+        str(jobs),
+        f"{runs:,}",
+        f"{1e3 * games / runs:.2f}",
+        f"{1e3 * cost / runs:.2f}",
+        f"{resident[1] - resident[0]:.1f}",
+    ]
+
+
+def _resident() -> float:
+    """Return the memory that this process holds (MB)."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+
 def print_table(title: str, head: Sequence[str], lines: Sequence[Sequence[str]], bound: str) -> None:
     """Print lines of cells under a head, the first column to the left, then what must hold."""
     rows = [head, *lines]
@@ -219,6 +266,7 @@ def main(
     repetitions: int = 3,
     duration: float = 600.0,
     sizes: Sequence[int] = (50, 200, 800, 3200),
+    runs: int = 5000,
 ) -> None:
     """Measure all and print it.
 
@@ -230,6 +278,8 @@ def main(
         Length of a game (s).
     sizes : sequence of int
         Numbers of robots at constant density, the first in the arena of 2 m.
+    runs : int
+        Tiny games that are kept in a ledger.
     """
     pairs = (("avoid,attack", 50), ("attack,attack", 50), ("avoid,attack", 6), ("attack,attack", 6))
     time_game(Plan("avoid,attack", 6, 10.0), 0, count_work(Plan("avoid,attack", 6, 10.0), 0))  # compiles
@@ -272,6 +322,12 @@ def main(
         ["N", "s"],
         [[str(n), f"{min(seconds_to_game(n) for _ in range(2)):.2f}"] for n in (6, 50)],
         f"bound: first finished game within {MOST_SECONDS_TO_GAME:g} s",
+    )
+    print_table(
+        "Games of 1 s and two robots, played by processes and kept in a ledger",
+        ["processes", "runs", "CPU ms / game", "CPU ms / run besides", "grown by MB"],
+        [overhead(runs, jobs) for jobs in (1, 2)],
+        f"bound: ≤ {MOST_OVERHEAD:g} ms besides the game, the start of the processes included",
     )
 
 

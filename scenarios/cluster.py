@@ -17,6 +17,8 @@ _PATIENCE: Final = 10
 def connected(address: str) -> Iterator[tuple[Executor, int]]:
     """Connect to a cluster, and yield an executor that plays on it and how many runs it plays at once.
 
+    When the connection ends, what waits is dropped; what is played then comes to its end on its own.
+
     Parameters
     ----------
     address : str
@@ -41,7 +43,4 @@ def connected(address: str) -> Iterator[tuple[Executor, int]]:
     with client:
         # Not pure: Dask would else take two runs of the same text for one, and keep what came out.
         executor = client.get_executor(pure=False)
-        try:
-            yield executor, max(_FEWEST_AT_ONCE, sum(client.nthreads().values()))
-        finally:
-            executor.shutdown(wait=False)
+        yield executor, max(_FEWEST_AT_ONCE, sum(client.nthreads().values()))

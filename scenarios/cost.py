@@ -2,7 +2,7 @@
 
 from typing import Final
 
-ROBOT_SECOND: Final = 6e-6
+ROBOT_SECOND: Final = 5e-6
 """CPU time of a robot and second of play, at a control period of 0.1 s (s)."""
 PUCK: Final = 300.0
 """Robot-seconds in which a puck is gathered."""

@@ -19,7 +19,7 @@ from scenarios.runs import Run, code_version, digest, package_version
 FILE: Final = "ledger.sqlite"
 """Name of the file in the directory of a study."""
 
-_FORMAT: Final = 1
+_FORMAT: Final = 1  # raise it with every change of these tables or of the columns in `scenarios.tables`
 _APPLICATION: Final = 0x6B73776D  # "kswm": by it a ledger is told from other SQLite files
 _TABLES: Final = """
 CREATE TABLE games (id INTEGER PRIMARY KEY, description TEXT NOT NULL UNIQUE);
@@ -74,11 +74,16 @@ class Ledger:
         self.path = path
         if not new and not path.is_file():
             raise InputError("results", str(path.parent), f"must be a directory with a {FILE} of kswarms")
-        try:
+        with _as_os_error(path):
             self._db = sqlite3.connect(path)
-            self._open(new)
-        except sqlite3.DatabaseError as error:
-            raise InputError("results", str(path), f"must be a ledger of kswarms ({error})") from error
+            try:
+                self._open(new)
+            except sqlite3.Error as error:
+                self._db.close()
+                if isinstance(error, sqlite3.OperationalError):
+                    raise
+                reason = f"must be a ledger of kswarms ({error})"
+                raise InputError("results", str(path), reason) from error
 
     def _open(self, new: bool) -> None:
         application, form = (
@@ -131,7 +136,7 @@ class Ledger:
             nothing is entered.
         """
         with self._transaction():
-            self._refuse_mixtures(curves, runs)
+            self._refuse_mixtures(curves)
             self._db.executemany("INSERT OR REPLACE INTO scenarios VALUES (?, ?)", scenarios.items())
             self._db.executemany(
                 "INSERT OR REPLACE INTO curves VALUES (?, ?, ?)",
@@ -151,7 +156,7 @@ class Ledger:
                 ((*label, run.n, run.seed, run.digest) for run in runs for label in run.labels),
             )
 
-    def _refuse_mixtures(self, curves: dict[tuple[str, str], str], runs: Sequence[Run]) -> None:
+    def _refuse_mixtures(self, curves: dict[tuple[str, str], str]) -> None:
         directory = str(self.path.parent)
         for (version,) in self._db.execute("SELECT DISTINCT version FROM runs"):
             if version != package_version():

@@ -16,6 +16,9 @@ RECORDS: Final = ("conflicts", "robots", "trajectory")
 """Tables that a game can record, besides its results."""
 
 
+_GONE: Final = "the workers are gone before all was played"
+
+
 class RunError(RuntimeError):
     """A run, named in the message, could not be played to its end.
 
@@ -169,7 +172,8 @@ def sweep(
     runs : sequence of Run
         What is played.
     jobs : int
-        How many are played at the same time; 1 without an executor plays in this process.
+        How many are played at the same time; an executor has twice as many at hand. Without one, 1 plays
+        in this process.
     record : str
         Names of the tables to record, separated by commas.
     executor : concurrent.futures.Executor, optional
@@ -183,10 +187,12 @@ def sweep(
     """
     waiting = deque(sorted(runs, key=lambda run: run.effort, reverse=True))
     if executor is not None:
-        for run, result, seconds in play_through(executor, waiting, jobs, record):
+        for run, result, seconds in play_through(executor, waiting, 2 * jobs, record):
             if result is None:
-                raise RunError("the workers are gone: what was played is kept")
+                raise RunError(_GONE)
             yield run, result, seconds
+        if waiting:
+            raise RunError(_GONE)
     elif min(jobs, len(runs)) <= 1:
         for run in waiting:
             yield run, *attempt(run, record, code_version())
@@ -197,7 +203,7 @@ def sweep(
 
 
 def play_through(
-    executor: Executor, waiting: deque[Run], jobs: int, record: str
+    executor: Executor, waiting: deque[Run], at_once: int, record: str
 ) -> Generator[tuple[Run, Outcome | Failure | None, float], None, None]:
     """Play runs through an executor, and yield each as it ends.
 
@@ -207,8 +213,8 @@ def play_through(
         Who plays.
     waiting : deque of Run
         What is played, in order. If the executor breaks, what it had not begun is left in it.
-    jobs : int
-        How many it plays at the same time; twice as many are given to it at a time.
+    at_once : int
+        How many are given to it at a time.
     record : str
         Names of the tables to record, separated by commas.
 
@@ -225,7 +231,7 @@ def play_through(
     playing: dict[Future[Any], Run] = {}
     broken = False
     while playing or (waiting and not broken):
-        while waiting and len(playing) < 2 * jobs and not broken:
+        while waiting and len(playing) < at_once and not broken:
             try:
                 future = executor.submit(attempt, waiting[0], record, code_version())
             except BrokenExecutor:

@@ -99,7 +99,13 @@ def describe_curve(condition: Condition, n: int) -> str:
     n : int
         Any of its numbers of robots.
     """
-    return _json({"condition": condition.model_dump(mode="json"), "files": _contents(condition.game(n))})
+    game = condition.game(n)
+    content = {
+        "condition": condition.model_dump(mode="json"),
+        "parameters": game.parameters.model_dump(mode="json"),  # what a preset's name stands for
+        "files": _contents(game),
+    }
+    return _json(content)
 
 
 def _hash(content: object) -> str:

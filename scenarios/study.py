@@ -25,7 +25,7 @@ from scenarios.description import Scenario
 from scenarios.files import write_json
 from scenarios.ledger import FILE, Ledger
 from scenarios.overview import codes
-from scenarios.runner import Failure, Outcome, Result, RunError, sweep
+from scenarios.runner import Failure, Outcome, Result, sweep
 from scenarios.runs import Run, code_version, describe_curve, expand, package_version
 
 MANIFEST: Final = "manifest.json"
@@ -70,6 +70,7 @@ class Study:
         self.tables: list[Path] = []
         self._command = command
         self._open = ExitStack()
+        self._session: int | None = None
 
     def __enter__(self) -> Self:
         _make(self.directory)
@@ -78,7 +79,6 @@ class Study:
             for left in self.directory.glob(f"{UNFINISHED}*"):
                 shutil.rmtree(left, ignore_errors=True)
             self._ledger = stack.enter_context(Ledger(self.directory / FILE, new=True))
-            self._session = self._ledger.begin_session(_about(self._command))
             self._open = stack.pop_all()
         return self
 
@@ -86,11 +86,13 @@ class Study:
         self, kind: type[BaseException] | None, error: BaseException | None, _trace: TracebackType | None
     ) -> None:
         with self._open:
-            if error is None or isinstance(error, KeyboardInterrupt | RunError):
-                self._finish("done" if error is None else "interrupted")
-            else:
+            if self._session is None:
+                return
+            if isinstance(error, OSError):
                 with suppress(OSError):  # the first error is the one to tell
-                    self._end_session(f"stopped by {kind.__name__ if kind else ''}")
+                    self._end_session(self._session, f"stopped: {error}")
+            else:
+                self._finish(self._session, "stopped: " + kind.__name__ if kind else "done")
 
     def plan(
         self, scenarios: Sequence[Scenario], first_seed: int = 0, records: Sequence[str] = ()
@@ -122,6 +124,8 @@ class Study:
             runs,
         )
         waiting = self._ledger.unfinished(runs, records)
+        if self._session is None:
+            self._session = self._ledger.begin_session(_about(self._command))
         self._ledger.update_session(
             self._session,
             scenarios={
@@ -171,16 +175,16 @@ class Study:
             packed = pack(result)
         self._ledger.add(run, result, seconds, packed, replay_command(self.directory, run.digest))
 
-    def _finish(self, status: str) -> None:
+    def _finish(self, session: int, status: str) -> None:
         from scenarios.tables import export  # here, since pyarrow takes long to import
 
         with TemporaryDirectory(dir=self.directory, prefix=UNFINISHED) as unfinished:
             whole = export(self._ledger, Path(unfinished))
             self.tables = [path.replace(self.directory / path.name) for path in whole]
-        self._end_session(status)
+        self._end_session(session, status)
 
-    def _end_session(self, status: str) -> None:
-        self._ledger.update_session(self._session, status=status, ended=_now())
+    def _end_session(self, session: int, status: str) -> None:
+        self._ledger.update_session(session, status=status, ended=_now())
         write_json(self.directory / MANIFEST, self._manifest())
 
     def _manifest(self) -> dict[str, Any]:
@@ -235,13 +239,14 @@ def _make(directory: Path) -> None:
 
     try:
         directory.mkdir(parents=True, exist_ok=True)
+        if not (directory / FILE).exists():
+            for name in SCHEMAS:
+                if (directory / f"{name}.parquet").exists():
+                    told = f"has a {name}.parquet but no {FILE}; name another"
+                    raise InputError("out", str(directory), told)
         (directory / LOCK).open("a").close()
     except OSError as error:
         raise InputError("out", str(directory), f"must be a writable directory ({error.strerror})") from error
-    if not (directory / FILE).exists():
-        for name in SCHEMAS:
-            if (directory / f"{name}.parquet").exists():
-                raise InputError("out", str(directory), f"has a {name}.parquet but no {FILE}; name another")
 
 
 def _about(command: str) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 import os
 import signal
 import threading
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Generator, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import contextmanager
@@ -13,7 +13,7 @@ from typing import Any, Final
 from scenarios.runner import Failure, Outcome, Result, play_through
 from scenarios.runs import Run
 
-GAMES_A_WORKER: Final = 1000
+GAMES_A_WORKER: Final = 2500
 """Games after which worker processes are replaced by new ones."""
 
 TRIES: Final = 3
@@ -24,43 +24,55 @@ def in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[Resul
     """Play runs in processes of this machine.
 
     A process that is killed breaks the executor, and which of the runs then played killed it (that took
-    too much memory, say) cannot be told. So each of these is tried again, alone.
+    too much memory, say) cannot be told. So these are tried again, one at a time.
 
     Parameters
     ----------
-    waiting, jobs, record
-        As for `scenarios.runner.play_through`.
+    waiting : deque of Run
+        What is played, in order.
+    jobs : int
+        Number of processes.
+    record : str
+        Names of the tables to record, separated by commas.
     """
     # Fresh workers for each portion bound what Mesa leaves behind in a process. The executor's own
     # `max_tasks_per_child` hangs in Python 3.11 (CPython issue 115634).
     while waiting:
         portion = deque(waiting.popleft() for _ in range(min(len(waiting), jobs * GAMES_A_WORKER)))
-        suspects = []
-        for run, result, seconds in _in_fresh_processes(portion, jobs, record):
+        suspects: deque[Run] = deque()
+        for run, result, seconds in _in_fresh_processes(portion, jobs, 2 * jobs, record):
             if result is None:
                 suspects.append(run)
             else:
                 yield run, result, seconds
         waiting.extendleft(reversed(portion))
-        for run in suspects:
-            yield _play_alone(run, record)
+        yield from _one_at_a_time(suspects, record)
 
 
-def _play_alone(run: Run, record: str) -> Result:
-    for _ in range(TRIES - 1):
-        for _, result, seconds in list(_in_fresh_processes(deque([run]), 1, record)):
+def _one_at_a_time(suspects: deque[Run], record: str) -> Generator[Result, None, None]:
+    tries = Counter(run.digest for run in suspects)
+    while suspects:
+        for run, result, seconds in _in_fresh_processes(suspects, 1, 1, record):
+            tries[run.digest] += 1
             if result is not None:
-                return run, result, seconds
-    return run, Failure(f"a worker process died during it, {TRIES} times: killed, or short of memory?"), 0.0
+                yield run, result, seconds
+            elif tries[run.digest] < TRIES:
+                suspects.appendleft(run)
+            else:
+                yield (
+                    run,
+                    Failure(f"a worker process died during it, {TRIES} times: killed, or short of memory?"),
+                    0.0,
+                )
 
 
 def _in_fresh_processes(
-    waiting: deque[Run], jobs: int, record: str
+    waiting: deque[Run], jobs: int, at_once: int, record: str
 ) -> Generator[tuple[Run, Outcome | Failure | None, float], None, None]:
     others = set(active_children())
     executor = _Processes(jobs, get_context("spawn"), _follow_parent)
     try:
-        yield from play_through(executor, waiting, jobs, record)
+        yield from play_through(executor, waiting, at_once, record)
     except BaseException:
         # Ctrl-C, or nobody wants the rest: do not wait for games that may take minutes.
         for worker in set(active_children()) - others:

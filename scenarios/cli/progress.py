@@ -65,6 +65,8 @@ def told(played: Iterable[Result], runs: Sequence[Run], kind: str) -> Iterator[C
         One of `KINDS`.
     """
     count = Count(runs)
+    if not runs:
+        kind = "none"  # a bar of nothing says nothing
     tell = {"bar": _bar, "json": _lines, "none": _nothing}[kind]
     return tell(_counted(played, count), count)
 
@@ -141,8 +143,8 @@ def clock(seconds: float) -> str:
     >>> clock(0.24), clock(75), clock(8337)
     ('0.2 s', '1:15 min', '2:19 h')
     """
-    if seconds < 60:
+    if seconds < 59.95:
         return f"{seconds:.1f} s"
-    if seconds < 3600:
+    if seconds < 3599.5:
         return "{}:{:02} min".format(*divmod(round(seconds), 60))
     return "{}:{:02} h".format(*divmod(round(seconds / 60), 60))

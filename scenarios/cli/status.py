@@ -45,8 +45,6 @@ def replay(
     wanted: Annotated[str, typer.Argument(metavar="RUN", help="A run of its tables: the column `run`.")],
 ) -> int:
     """Play one run again, print what comes out of it, and tell whether DIR has the same. Write nothing."""
-    from rich.pretty import pprint
-
     from scenarios.ledger import FILE, Ledger
     from scenarios.runner import name_of, play
 
@@ -56,7 +54,7 @@ def replay(
     typer.echo(name_of(run))
     outcome = play(run)
     for row in (*outcome.swarms, *outcome.policies):
-        pprint(row, expand_all=False)
+        typer.echo("  " + ", ".join(f"{name}={value!r}" for name, value in row.items()))
     if kept is None:
         typer.echo(f"{directory} has no results of it")
         return 0

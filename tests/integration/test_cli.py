@@ -1,10 +1,8 @@
 """The command line: what it prints, what it writes, and how it refuses."""
 
 import os
-import signal
 import subprocess
 import sys
-import time
 import tomllib
 from operator import itemgetter
 from pathlib import Path
@@ -17,7 +15,11 @@ from scenarios.cli import invoke
 from scenarios.cli import run as run_command
 from scenarios.description import Scenario
 from scenarios.runner import RunError
+from scenarios.runs import expand
 
+CONDITIONS = [
+    condition.replace(name="") for scenario in CATALOGUE.values() for condition in scenario.conditions
+]
 KSWARMS = [sys.executable, "-c", "from scenarios.cli import main; main()"]
 QUICK = ["--densities", "6", "--seeds", "1", "--jobs", "1", "--no-figures"]
 
@@ -32,9 +34,23 @@ def _in_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 def test_list_names_every_scenario_and_table(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["list"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines] == [*CATALOGUE, *TABLES]
+    assert [line.split()[0] for line in lines] == ["id", *CATALOGUE, *TABLES, "--all"]
     entries = (*CATALOGUE.values(), *TABLES.values())
-    assert all(line.endswith(f"  {entry.title}") for entry, line in zip(entries, lines, strict=True))
+    assert all(line.endswith(f"  {entry.title}") for entry, line in zip(entries, lines[1:-1], strict=True))
+
+
+def test_list_tells_what_a_scenario_takes_and_counts_shared_runs_once(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    invoke(["list"])
+    sizes = {line.split()[0]: line.split()[1:4] for line in capsys.readouterr().out.splitlines()}
+    assert sizes["fig-6.1a"] == ["1", "200", "16.8"]  # s: 200 games × 600 s × 28 robots × 5 µs
+    assert sizes["fig-6.12"][:2] == ["6", "1,200"]
+    assert sizes["table-6.1"][:2] == ["2", "400"]
+    runs = expand(CATALOGUE.values())
+    assert sizes["--all"][:2] == [str(len(set(CONDITIONS))), f"{len(runs):,}"]
+    hours, minutes = map(int, sizes["--all"][2].split(":"))
+    assert 60 * hours + minutes == pytest.approx(sum(run.effort for run in runs) / 60, abs=1)
 
 
 def test_list_starts_fast_since_it_imports_nothing_heavy() -> None:
@@ -64,7 +80,7 @@ def test_show_of_a_table_prints_the_scenarios_that_it_tabulates(
 def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["--version"]) == 0
     assert capsys.readouterr().out.startswith("kswarms 0.")
-    for words in ([], ["list"], ["show"], ["run"]):
+    for words in ([], ["list"], ["show"], ["run"], ["status"], ["replay"]):
         assert invoke([*words, "--help"]) == 0
         assert f"Example: kswarms {' '.join(words)}" in capsys.readouterr().out
     assert invoke([]) == 0
@@ -107,6 +123,13 @@ def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
         ("run fig-6.1a --out taken", "out='taken': must be a writable directory"),
         ("run fig-6.1a --out taken/below", "out='taken/below': must be a writable directory"),
         ("run fig-6.1a --speed 3", "No such option"),
+        ("run fig-6.1a --progress dots", "progress='dots': must be one of bar, json, none"),
+        ("run fig-6.1a --scheduler nowhere", "scheduler='nowhere': must be the address of"),
+        ("run mine.toml", "id='mine.toml': must be a file of TOML (No such file or directory)"),
+        ("run taken.toml", "id='taken.toml': must be a file of TOML ("),
+        ("status .", "results='.': must be a directory with a ledger.sqlite of kswarms"),
+        ("status nowhere", "results='nowhere': must be a directory with a ledger.sqlite of kswarms"),
+        ("replay . 0123", "results='.': must be a directory with a ledger.sqlite of kswarms"),
         ("show", "Missing argument"),
         ("play", "No such command"),
     ],
@@ -114,13 +137,14 @@ def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
 def test_bad_input_is_refused_in_one_line_and_nothing_is_written(
     arguments: str, line: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    Path("taken").write_text("a file")
+    for name in ("taken", "taken.toml"):
+        Path(name).write_text("a file")
     assert invoke(arguments.split()) == 2
     printed = capsys.readouterr()
     assert printed.out == ""
     assert printed.err.startswith(f"kswarms: {line}")
     assert printed.err.count("\n") == 1
-    assert [path.name for path in tmp_path.iterdir()] == ["taken"]
+    assert {path.name for path in tmp_path.iterdir()} == {"taken", "taken.toml"}
 
 
 def test_a_run_writes_tables_and_tells_what_to_type_next(capsys: pytest.CaptureFixture[str]) -> None:
@@ -244,9 +268,9 @@ def test_all_plays_what_the_densities_suit(
 ) -> None:
     played = []
 
-    def note(runs: list[run_command.Run], *_rest: object) -> list[Path]:
-        played.extend((label[0], run.n) for run in runs for label in run.labels)
-        return []
+    def note(scenarios: list[Scenario], *_rest: object) -> tuple[list[Path], int]:
+        played.extend((label[0], run.n) for run in expand(scenarios) for label in run.labels)
+        return [], 0
 
     monkeypatch.setattr(run_command, "_play", note)
     assert invoke(["run", "--all", "--densities", "6,13", "--seeds", "1", "--no-figures"]) == 0
@@ -270,30 +294,12 @@ def test_a_failing_run_and_a_full_disk_are_reported_and_nothing_is_written(
 
         monkeypatch.setattr(run_command, "_play", play)
 
-    fail(RunError("run n=6 seed=0 failed: ZeroDivisionError: division by zero"))
+    fail(RunError("run n=6 seed=0 failed: ZeroDivisionError: division by zero", "Traceback: here"))
     assert invoke(["run", "fig-6.1a", *QUICK]) == 1
-    assert capsys.readouterr().err.splitlines()[-1].startswith("kswarms: run n=6 seed=0 failed")
+    told = capsys.readouterr().err.splitlines()
+    assert told[0] == "Traceback: here"
+    assert told[-1].startswith("kswarms: run n=6 seed=0 failed")
     fail(OSError(28, "No space left on device"))
     assert invoke(["run", "fig-6.1a", *QUICK]) == 1
     assert capsys.readouterr().err == "kswarms: [Errno 28] No space left on device\n"
     assert list(Path().iterdir()) == []
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("jobs", ["1", "2"])
-def test_ctrl_c_ends_cleanly(jobs: str) -> None:
-    words = [*KSWARMS, "run", "fig-6.2", "--densities", "50", "--seeds", "40", "--jobs", jobs]
-    with subprocess.Popen(
-        words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
-    ) as process:
-        while not Path("results").exists():  # made when the runs are about to start
-            assert process.poll() is None, "it ended before it began"
-            time.sleep(0.05)
-        time.sleep(3.0)
-        os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers too
-        out, err = process.communicate(timeout=20)
-    assert process.returncode == 130
-    assert out == ""
-    assert err.splitlines()[-1] == "kswarms: interrupted"
-    assert "Traceback" not in err
-    assert list(Path("results").iterdir()) == []

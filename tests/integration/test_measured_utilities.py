@@ -19,7 +19,7 @@ from model.game import Game, Swarm
 from scenarios.description import Condition, Scenario, SwarmRule
 from scenarios.runner import play
 from scenarios.runs import expand
-from scenarios.tables import tabulate, write
+from scenarios.study import Study
 
 ALPHA = {1: 0.5, 2: 1.0, 3: 2.0}
 BETA = {(k, m): 1.0 + 0.1 * k + 0.01 * m for k in (1, 2, 3) for m in (1, 2, 3)}
@@ -106,7 +106,8 @@ def test_a_file_of_conflicts_gives_what_the_games_themselves_give(tmp_path: Path
     )  # fmt: skip
     runs = expand([crowd])
     outcomes = [play(run, "conflicts") for run in runs]
-    write(tmp_path, [tabulate(run, outcome) for run, outcome in zip(runs, outcomes, strict=True)])
+    with Study(tmp_path) as study:
+        assert len(list(study.play(study.plan([crowd]), records=["conflicts"]))) == 2
     robots = robot_utilities(read_conflicts(tmp_path))
     assert len(robots) == 10 + 16
     for run, outcome in zip(runs, outcomes, strict=True):

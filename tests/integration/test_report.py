@@ -45,16 +45,14 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a directory with the records of two short games of a scenario with a learner."""
-    from scenarios.runner import play_all
-    from scenarios.runs import expand
-    from scenarios.tables import tabulate, write
+    from scenarios.study import Study
 
     scenario = CATALOGUE["fig-6.4b"]
     condition = scenario.conditions[0].replace(learning=30, duration=30)
     short = scenario.replace(conditions=(condition,), densities=(10,), seeds=2)
     directory = tmp_path_factory.mktemp("recorded")
-    played = play_all(expand([short]), record="conflicts,robots")
-    write(directory, [tabulate(run, outcome) for run, outcome in played])
+    with Study(directory) as played:
+        assert len(list(played.play(played.plan([short]), records=["conflicts", "robots"]))) == 2
     return directory
 
 

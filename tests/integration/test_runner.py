@@ -9,6 +9,7 @@ import sys
 import time
 import weakref
 from collections.abc import Iterable
+from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor
 from contextlib import closing
 from multiprocessing import active_children
 from pathlib import Path
@@ -17,9 +18,9 @@ import mesa
 import pytest
 
 from model.foraging import GameModel
-from scenarios import runner
+from scenarios import workers
 from scenarios.catalogue import CATALOGUE
-from scenarios.runner import RECORDS, Outcome, RunError, play, play_all
+from scenarios.runner import RECORDS, Failure, Outcome, RunError, attempt, play, play_all, sweep
 from scenarios.runs import Run, expand
 
 
@@ -52,7 +53,7 @@ class Deadly(Run):
 
 @pytest.mark.slow
 def test_workers_and_order_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(runner, "GAMES_A_WORKER", 3)  # so that workers are replaced on the way
+    monkeypatch.setattr(workers, "GAMES_A_WORKER", 3)  # so that workers are replaced on the way
     runs = short("fig-6.1c") + short("fig-6.4a", (6,)) + short("fig-6.15", (7,), seeds=1)
     record = ",".join(RECORDS)
     here = by_name(play_all(runs, 1, record))
@@ -130,14 +131,32 @@ def test_a_failing_run_is_named(jobs: int) -> None:
         list(play_all(bad + good, jobs))
     named = "run scenario='fig-6.15' condition='fight-1000ms' n=6 seed=-1 failed: "
     assert str(failure.value).startswith(named + "InputError: seed=-1")
+    assert "in play\n" in failure.value.trace
     assert active_children() == []
 
 
 @pytest.mark.slow
-def test_a_worker_that_dies_is_reported() -> None:
-    with pytest.raises(RunError, match="a worker process died"):
-        list(play_all([Deadly(), *short("fig-6.1a")], 2))
+def test_a_run_that_kills_its_worker_is_tried_again_and_then_failed_and_no_other_is_lost() -> None:
+    runs = short("fig-6.1a", seeds=5)
+    came = {run.digest: result for run, result, _ in sweep([Deadly(), *runs], 2)}
+    failure = came.pop("dead")
+    assert failure == Failure("a worker process died during it, 3 times: killed, or short of memory?")
+    assert came == by_name(play_all(runs))
     assert active_children() == []
+    with pytest.raises(RunError, match="n=0 seed=0 failed: a worker process died"):
+        list(play_all([Deadly(), *runs], 2))
+
+
+@pytest.mark.slow
+def test_a_worker_that_is_killed_loses_nothing() -> None:
+    runs = short("fig-6.1a", seeds=30)
+    came = {}
+    with closing(sweep(runs, 2)) as played:
+        for run, result, _ in played:
+            came[run.digest] = result
+            if len(came) == 10:
+                os.kill(active_children()[0].pid or 0, signal.SIGKILL)
+    assert came == by_name(play_all(runs))
 
 
 @pytest.mark.slow
@@ -145,9 +164,9 @@ def test_ctrl_c_is_left_to_the_parent() -> None:
     mask_before = signal.pthread_sigmask(signal.SIG_BLOCK, [])
     with closing(play_all(short("fig-6.1a", seeds=8), 2)) as played:
         next(played)
-        workers = active_children()
-        assert len(workers) == 2
-        for worker in workers:
+        children = active_children()
+        assert len(children) == 2
+        for worker in children:
             status = Path(f"/proc/{worker.pid}/status").read_text()
             blocked = int(status.partition("SigBlk:")[2].split()[0], 16)
             assert blocked >> (signal.SIGINT - 1) & 1
@@ -197,3 +216,54 @@ def alive(process: int) -> bool:
         return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except (ProcessLookupError, FileNotFoundError):
         return False
+
+
+@pytest.mark.slow
+def test_any_executor_plays_and_a_failure_does_not_end_the_sweep() -> None:
+    runs = short("fig-6.1a", densities=(6,), seeds=4)
+    bad = Run("bad", runs[0].game, -1, runs[0].labels)
+    with ThreadPoolExecutor(1) as executor:
+        came = {run.digest: result for run, result, _ in sweep([bad, *runs], executor=executor)}
+    failure = came.pop("bad")
+    assert isinstance(failure, Failure)
+    assert failure.error.startswith("InputError: seed=-1")
+    assert failure.trace.startswith("Traceback")
+    assert came == by_name(play_all(runs))
+
+
+def test_an_executor_that_gives_up_ends_the_sweep() -> None:
+    class Gone(ThreadPoolExecutor):
+        def submit(self, *_arguments: object, **_options: object) -> Future[object]:
+            future: Future[object] = Future()
+            future.cancel()
+            future.set_running_or_notify_cancel()
+            return future
+
+    class Broken(ThreadPoolExecutor):
+        def submit(self, *_arguments: object, **_options: object) -> Future[object]:
+            raise BrokenExecutor
+
+    for kind in (Gone, Broken):
+        with kind(1) as executor, pytest.raises(RunError, match="the workers are gone"):
+            list(sweep(short("fig-6.1a"), executor=executor))
+
+
+def test_what_cannot_be_sent_back_is_a_failure() -> None:
+    class Broken(ThreadPoolExecutor):
+        def submit(self, *_arguments: object, **_options: object) -> Future[object]:
+            future: Future[object] = Future()
+            future.set_exception(TypeError("cannot pickle"))
+            return future
+
+    with Broken(1) as executor:
+        ((_, failure, _),) = sweep(short("fig-6.1a", densities=(6,), seeds=1), executor=executor)
+    assert isinstance(failure, Failure)
+    assert failure.error == "TypeError: cannot pickle"
+
+
+def test_a_worker_of_other_code_plays_nothing() -> None:
+    (run,) = short("fig-6.1a", densities=(6,), seeds=1)
+    failure, seconds = attempt(run, "", "0.0.1 0123456789ab")
+    assert isinstance(failure, Failure)
+    assert failure.error.endswith(", it must have 0.0.1 0123456789ab")
+    assert seconds == 0

@@ -2,6 +2,7 @@
 
 import subprocess
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pyarrow.parquet as pq
@@ -74,12 +75,22 @@ def test_the_bare_loop_processes_what_it_is_asked_to(monkeypatch: pytest.MonkeyP
     assert len(made) == 100
 
 
-def test_main_prints_a_table_for_each_cost(sleepless: None, capsys: pytest.CaptureFixture[str]) -> None:
-    bench.main(seeds=1, repetitions=1, duration=60.0, sizes=(6, 24))
+def test_main_prints_a_table_for_each_cost(
+    sleepless: None, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    real = bench.overhead
+    monkeypatch.setattr(bench, "overhead", lambda runs, _jobs: real(runs, 1))  # spares it the processes
+    bench.main(seeds=1, repetitions=1, duration=60.0, sizes=(6, 24), runs=20)
     printed = capsys.readouterr().out
-    assert printed.count("  bound") == 5
+    assert printed.count("  bound") == 6
     ((n, side, *_),) = [line.split() for line in printed.splitlines() if line.startswith("  24 ")]
     assert (n, side) == ("24", "4.0")  # four times the robots on four times the area
+
+
+def test_runs_that_are_not_stored_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bench.pq, "read_metadata", lambda _path: SimpleNamespace(num_rows=39))
+    with pytest.raises(WorkError, match="39 rows stored of 20 runs"):
+        bench.overhead(20, 1)
 
 
 @pytest.mark.slow

@@ -14,7 +14,8 @@ from agents.errors import InputError
 from model.parameters import parse_parameters
 from scenarios import calibration_games
 from scenarios.calibration import Setup, calibrate, error_of, validate
-from scenarios.calibration_games import START, learning_game, texts, to_place, to_point, write_json
+from scenarios.calibration_games import START, learning_game, texts, to_place, to_point
+from scenarios.files import write_json
 from scenarios.runs import Run
 
 TARGET = {("avoid", 6): 10.0, ("avoid", 30): 60.0, ("attack", 6): 2.0, ("attack", 30): 30.0}

@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 from agents.learned import save
+from model.parameters import PRESETS
 from scenarios import runs as module
 from scenarios.catalogue import CATALOGUE
-from scenarios.runs import digest, expand
+from scenarios.runs import code_version, describe_curve, digest, expand
 
 GAME = CATALOGUE["fig-6.1c"].game("", 6)
 
@@ -127,11 +128,11 @@ def test_effort_grows_with_robots_time_learning_and_finer_periods() -> None:
     by_effort = [
         ("fig-6.1a", "", 6),
         ("fig-6.15", "flight-50ms", 6),
+        ("fig-6.2", "", 50),
         ("fig-6.4a", "", 6),
         ("fig-6.1a", "", 50),
+        ("fig-6.5a", "", 50),
         ("fig-6.4a", "", 50),
-        ("fig-6.2", "", 6),
-        ("fig-6.2", "", 50),
     ]
     efforts = []
     for name, condition, n in by_effort:
@@ -139,3 +140,19 @@ def test_effort_grows_with_robots_time_learning_and_finer_periods() -> None:
         efforts += [run.effort for run in runs if run.labels == ((name, condition),)]
     assert efforts == sorted(efforts)
     assert len(set(efforts)) == len(by_effort)
+
+
+def test_a_curve_is_described_by_what_the_name_of_its_parameters_stands_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    condition = CATALOGUE["fig-6.1c"].conditions[0]
+    described = describe_curve(condition, 6)
+    assert described == describe_curve(condition, 50)
+    assert described != describe_curve(condition.replace(duration=601.0), 6)
+    monkeypatch.setitem(PRESETS, "fitted", PRESETS["fitted"].replace(friction=0.9))
+    assert described != describe_curve(condition, 6)
+
+
+def test_the_code_is_named_by_the_version_and_what_it_is() -> None:
+    assert re.fullmatch(r"\S+ [0-9a-f]{12}", code_version())
+    assert code_version().startswith(f"{module.package_version()} ")

@@ -1,0 +1,116 @@
+"""A study on a Dask cluster of two processes, and on this machine: the same bytes."""
+
+import os
+import signal
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+from distributed import Client, LocalCluster
+
+from agents.errors import InputError
+from scenarios.cli import invoke
+from scenarios.cluster import connected
+from scenarios.description import Condition, Scenario, SwarmRule
+from scenarios.runner import play_all, sweep
+from scenarios.runs import expand
+
+SMALL = Scenario(
+    id="small",
+    title="Games of ten seconds",
+    densities=(6, 10),
+    seeds=15,
+    conditions=(
+        Condition(
+            swarms=(SwarmRule(policy="avoid"), SwarmRule(policy="inter-learner")),
+            learning=10.0,
+            duration=10.0,
+        ),
+    ),
+)
+TABLES = ("runs.parquet", "policies.parquet", "conflicts.parquet")
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[LocalCluster]:
+    """Two workers of one thread each, restarted when they die."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PYTHONPATH", os.pathsep.join(path or str(Path.cwd()) for path in sys.path))
+        with LocalCluster(2, threads_per_worker=1, dashboard_address=None) as started:
+            yield started
+
+
+def test_workers_in_any_number_and_a_cluster_write_the_same_tables(
+    cluster: LocalCluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(path or str(Path.cwd()) for path in sys.path))
+    monkeypatch.chdir(tmp_path)
+    Path("small.toml").write_text(SMALL.to_toml())
+    words = ["run", "small.toml", "--quiet", "--no-figures", "--record", "conflicts"]
+    places = {
+        "1": ["--jobs", "1"],
+        "2": ["--jobs", "2"],
+        "4": ["--jobs", "4"],
+        "dask": ["--scheduler", cluster.scheduler_address],
+    }
+    for name, place in places.items():
+        assert invoke([*words, *place, "--out", name]) == 0
+    written = {name: [Path(name, table).read_bytes() for table in TABLES] for name in places}
+    assert all(tables == written["1"] for tables in written.values())
+
+
+def test_a_worker_of_the_cluster_that_is_killed_loses_nothing(cluster: LocalCluster) -> None:
+    condition = SMALL.conditions[0].replace(duration=200.0)
+    runs = expand([SMALL.replace(densities=(30,), seeds=30, conditions=(condition,))])
+    came = {}
+    with (
+        Client(cluster) as client,
+        connected(cluster.scheduler_address) as (executor, jobs),
+        closing(sweep(runs, jobs, executor=executor)) as played,
+    ):
+        cluster.wait_for_workers(2)
+        victim = next(iter(client.run(os.getpid).values()))
+        for run, result, _ in played:
+            came[run.digest] = result
+            if len(came) == 3:
+                os.kill(victim, signal.SIGKILL)
+        cluster.wait_for_workers(2)
+        assert victim not in client.run(os.getpid).values()
+    assert came == {run.digest: outcome for run, outcome in play_all(runs)}
+
+
+def test_a_sweep_that_nobody_listens_to_any_more_leaves_nothing_on_the_cluster(cluster: LocalCluster) -> None:
+    def tasks(dask_scheduler: Any) -> int:
+        return len(dask_scheduler.tasks)
+
+    with Client(cluster) as client:
+        with connected(cluster.scheduler_address) as (executor, jobs):
+            played = sweep(expand([SMALL.replace(densities=(40, 50), seeds=100)]), jobs, executor=executor)
+            next(played)
+            assert client.run_on_scheduler(tasks) > 30
+            played.close()
+        deadline = time.monotonic() + 10
+        while client.run_on_scheduler(tasks):
+            assert time.monotonic() < deadline, "tasks are left"
+            time.sleep(0.05)
+
+
+def test_a_cluster_needs_dask_and_a_scheduler_that_answers(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("scenarios.cluster._PATIENCE", 1)
+    with (
+        pytest.raises(InputError, match="must be the address of a Dask scheduler"),
+        connected("tcp://127.0.0.1:1"),
+    ):
+        pass
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with (
+        pytest.raises(InputError, match=r"needs Dask: pip install 'kswarms\[cluster\]'"),
+        connected("tcp://x:1"),
+    ):
+        pass
