@@ -78,6 +78,27 @@ class Fleet:
         self.robots["heading"] = headings
         self.robots["forward_x"] = np.cos(headings)
         self.robots["forward_y"] = np.sin(headings)
+        self._view()
+
+    def keep(self, rows: Integers, positions: Floats) -> None:
+        """Let only some robots stay, and close their ranks.
+
+        Parameters
+        ----------
+        rows : ndarray of int64, shape (m,)
+            Rows of those who stay, ascending; they are then rows 0 … m − 1, in the same memory.
+        positions : ndarray of float64, shape (m, 2)
+            Their centres (m); kept, not copied.
+        """
+        new_row = np.full(len(self.robots) + 1, -1)  # its last entry is that of the opponent −1
+        new_row[rows] = np.arange(len(rows))
+        self.robots["opponent"] = new_row[self.robots["opponent"]]
+        self.robots[: len(rows)] = self.robots[rows]
+        self.robots = self.robots[: len(rows)]
+        self.positions = positions
+        self._view()
+
+    def _view(self) -> None:
         self.swarm = self.robots["swarm"].data
         self.phase = self.robots["phase"].data
         self.carrying = self.robots["carrying"].data

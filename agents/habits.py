@@ -53,8 +53,8 @@ class Habits(NamedTuple):
 class Conflict(NamedTuple):
     """One interaction of a robot, from the start of its action to the start of the next; times in periods.
 
-    `seen` is what `agents.sensors.read_robots` returns: how many of each swarm it has is n_k and n_m of
-    section 1.3.
+    Robots are rows of the fleet. `seen` is what `agents.sensors.read_robots` returns: how many of each swarm
+    it has is n_k and n_m of section 1.3.
     """
 
     robot: int

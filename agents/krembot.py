@@ -48,8 +48,8 @@ class Krembot(ContinuousSpaceAgent):
     ----------
     model : World
         The Mesa model that it lives in.
-    index : int
-        Its number in the game, from 0: its row in the fleet and the name of its streams.
+    number : int
+        Its number in the game, from 0, which also names its streams.
     swarm : int
         Its swarm-ID, from 0.
     policy : Policy
@@ -65,6 +65,8 @@ class Krembot(ContinuousSpaceAgent):
 
     Attributes
     ----------
+    index : int
+        Its row in the fleet: its number, less by one for each robot before it that is absent.
     pucks : int
         Pucks deposited.
     t_a : list of int, length `swarms`
@@ -78,7 +80,7 @@ class Krembot(ContinuousSpaceAgent):
     def __init__(
         self,
         model: World,
-        index: int,
+        number: int,
         swarm: int,
         policy: Policy,
         policy_name: str,
@@ -88,7 +90,7 @@ class Krembot(ContinuousSpaceAgent):
         swarms: int,
     ) -> None:
         super().__init__(model.space, cast(Any, model))
-        self.index = index
+        self.number = self.index = number
         self.swarm = swarm
         self.policy = policy
         self.policy_name = policy_name

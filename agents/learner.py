@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from agents.actions import AWAY, Action
 from agents.bandit import Bandit
 from agents.errors import InputError
-from agents.rewards import make_reward
+from agents.rewards import Reward, make_reward
 from agents.selection import make_rule
 from agents.streams import Purpose
 
@@ -79,6 +79,11 @@ class Learner:
         self._draws = setting.streams.draws
         self._opponent = -1
         self._arm = -1
+
+    @property
+    def reward(self) -> Reward:
+        """What it is rewarded by."""
+        return self._reward
 
     def choose(self, opponent: int) -> Action:
         """Return the action to take against a robot of swarm `opponent` (Eq. 4.16 while learning)."""

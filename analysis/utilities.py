@@ -41,7 +41,8 @@ from agents.theory.times import Interaction, approximate_wlu, inter_utility, int
 Weights = float | Mapping[int, float] | Mapping[tuple[int, int], float]
 """α or β: for all, by swarm, or by (swarm, opponent's swarm); swarms from 1."""
 
-_COLUMNS: Final = ("phase", "robot", "swarm", "opponent_swarm", "start", "seen", "t_a", "t_p")
+COLUMNS: Final = ("phase", "robot", "swarm", "opponent_swarm", "start", "seen", "t_a", "t_p")
+"""What is read of a table of conflicts."""
 
 
 def robot_utilities(
@@ -111,7 +112,7 @@ def swarm_utilities(robots: pd.DataFrame) -> pd.DataFrame:
 
 def _measured(conflicts: pd.DataFrame, phase: str) -> pd.DataFrame:
     """Return the conflicts of a phase, checked."""
-    missing = [name for name in _COLUMNS if name not in conflicts.columns]
+    missing = [name for name in COLUMNS if name not in conflicts.columns]
     if missing:
         raise InputError("conflicts", missing, "must have these columns too")
     rows = conflicts[conflicts["phase"] == phase]

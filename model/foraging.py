@@ -7,7 +7,7 @@ everything else at their instant: they see the world as the last period left it.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NoReturn, cast
 
 import mesa
@@ -52,7 +52,7 @@ class GameModel(mesa.Model):
     space : mesa.experimental.continuous_space.ContinuousSpace
         Where the robots are; the kernel works on its array of positions.
     robots : list of Krembot
-        All robots by number; S1's first.
+        All robots that are there, by number; S1's first.
     members : list of list of Krembot
         The robots of each swarm.
     pucks : list of int
@@ -98,13 +98,14 @@ class GameModel(mesa.Model):
         self.ended = ""
         self._stopped: int | None = None
         self._sampled_end = False
+        self._start = math.ceil(game.learning / game.parameters.period - 1e-9)
+        """When the measured game begins (periods)."""
         self._populate()
-        self._swarm_of: list[int] = self.fleet.swarm.tolist()
+        if game.absent and (game.absent_from == "learning" or self._start == 0):
+            self._take_away(game.absent)
         self._kernel = Kernel(game, self.arena, self.fleet)
         self._due = 0
         """Events of the kernel that the robots have not decided on yet."""
-        self._start = math.ceil(game.learning / game.parameters.period - 1e-9)
-        """When the measured game begins (periods)."""
         self._end = self._start + self.habits.periods(game.duration)
         self.phase = "game"
         if self._start > 0:
@@ -215,12 +216,32 @@ class GameModel(mesa.Model):
                 index += 1
         self.robots = [robot for members in self.members for robot in members]
         self.fleet.positions[:] = positions
+        self._swarm_of: list[int] = swarm_of.tolist()
+
+    def _take_away(self, absent: Sequence[int]) -> None:
+        """Take robots out of the game: their bodies, what they wait for, and the pucks that they carry."""
+        for number in absent:
+            self.robots[number].finish(cast(int, self.env.now))
+            self.robots[number].remove()
+        self.robots = [robot for robot in self.robots if robot.number not in absent]
+        swarms = range(len(self.game.swarms))
+        self.members = [[robot for robot in self.robots if robot.swarm == k] for k in swarms]
+        self.fleet.keep(np.array([robot.index for robot in self.robots]), self.space.agent_positions)
+        for row, robot in enumerate(self.robots):
+            robot.index = row
+        self._swarm_of = self.fleet.swarm.tolist()
 
     def _begin_game(self, _: Event) -> None:
         """End the learning: policies are fixed, and all counts begin anew in the world as it is."""
         for robot in self.robots:
             robot.restart(cast(int, self.env.now))
         self._flush_conflicts()
+        if self.game.absent and self.game.absent_from == "game":
+            supply = self.supply
+            self._take_away(self.game.absent)
+            # A kernel has memory for its robots. It is between two periods here, as a new one is.
+            self._kernel = Kernel(self.game, self.arena, self.fleet)
+            self._kernel.supply[:] = supply
         self.phase = "game"
         self.pucks = [0] * len(self.pucks)
         self.picked_up = 0

@@ -2,9 +2,15 @@
 
 import math
 from collections.abc import Sequence
-from typing import Final, Self
+from typing import Any, Final, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import (
+    Field,
+    SerializerFunctionWrapHandler,
+    field_validator,
+    model_serializer,
+    model_validator,
+)
 
 from agents.actions import Action
 from agents.body import BODIES, Body
@@ -64,6 +70,11 @@ class Game(Checked):
         The game ends with this puck deposited, over all swarms.
     supply : int, optional
         Pucks at each station; no limit if not given.
+    absent : tuple of int
+        Numbers of robots that are not there, ascending. All others keep theirs, and with them their streams,
+        starting places and policies, so that two games differ by what the absent robots would have done.
+    absent_from : {'learning', 'game'}
+        Whether they are absent from the very beginning, or learn and leave before the measured game.
 
     Raises
     ------
@@ -81,6 +92,22 @@ class Game(Checked):
     duration: float = Field(600.0, gt=0)
     puck_limit: int | None = Field(None, ge=1)
     supply: int | None = Field(None, ge=1)
+    absent: tuple[int, ...] = ()
+    absent_from: Literal["learning", "game"] = "learning"
+
+    @field_validator("absent")
+    @classmethod
+    def _ascending(cls, absent: tuple[int, ...]) -> tuple[int, ...]:
+        return tuple(sorted(absent))
+
+    @model_serializer(mode="wrap")
+    def _plain(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        fields: dict[str, Any] = handler(self)
+        if not self.absent:
+            # So that a game with all its robots has one name, whatever its absent robots would have done.
+            fields.pop("absent", None)
+            fields.pop("absent_from", None)
+        return fields
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -109,8 +136,18 @@ class Game(Checked):
             raise InputError(
                 "wall_distance", self.parameters.wall_distance, "must be less than half the arena"
             )
+        self._check_absent()
         self._check_room()
         return self
+
+    def _check_absent(self) -> None:
+        for robot in self.absent:
+            if not 0 <= robot < self.size:
+                raise InputError("absent", robot, f"must be a robot of the game, 0 to {self.size - 1}")
+        if len(set(self.absent)) < len(self.absent):
+            raise InputError("absent", self.absent, "must name each robot once")
+        if len(self.absent) == self.size:
+            raise InputError("absent", self.absent, "must leave a robot in the game")
 
     def _check_room(self) -> None:
         parameters, body, n = self.parameters, self.body_preset, self.size
@@ -125,7 +162,7 @@ class Game(Checked):
 
     @property
     def size(self) -> int:
-        """Robots in all, N."""
+        """Robots in all, N, those that are absent included."""
         return sum(swarm.size for swarm in self.swarms)
 
     @property

@@ -88,17 +88,17 @@ def add_conflicts(model: "GameModel", conflicts: Iterable[Conflict]) -> None:
 
     ``seen`` has a tuple for each swarm: the numbers of its robots that the sensors read, ascending.
     """
-    seconds = model.habits.seconds
+    seconds, robots = model.habits.seconds, model.robots
     for c in conflicts:
-        seen = tuple(
-            tuple(sorted(j for j in c.seen if j >= 0 and model.robots[j].swarm == k))
-            for k in range(len(model.members))
-        )
+        robot, opponent = robots[c.robot], robots[c.opponent]
+        seen: list[list[int]] = [[] for _ in model.members]
+        for j in sorted(c.seen):
+            if j >= 0:
+                seen[robots[j].swarm].append(robots[j].number)
         row = (
-            *(model.phase, c.robot, model.robots[c.robot].swarm + 1),
-            *(c.opponent, model.robots[c.opponent].swarm + 1),
+            *(model.phase, robot.number, robot.swarm + 1, opponent.number, opponent.swarm + 1),
             *(seconds(c.start), c.x, c.y, c.action.name, seconds(c.t_a), seconds(c.t_p), c.active),
-            *(seen, c.reward, c.value),
+            *(tuple(map(tuple, seen)), c.reward, c.value),
         )
         model.datacollector.add_table_row("conflicts", dict(zip(_CONFLICT_COLUMNS, row, strict=True)))
 
@@ -108,7 +108,7 @@ def robots_table(model: "GameModel") -> Table:
     seconds = model.habits.seconds
     times = [robot.times() for robot in model.robots]
     return {
-        "robot": [robot.index for robot in model.robots],
+        "robot": [robot.number for robot in model.robots],
         "swarm": [robot.swarm + 1 for robot in model.robots],
         "policy": [robot.policy_name for robot in model.robots],
         "pucks": [robot.pucks for robot in model.robots],
@@ -142,7 +142,7 @@ def result_rows(model: "GameModel") -> list[dict[str, Any]]:
         rows.append(
             {
                 "swarm": k + 1,
-                "size": swarm.size,
+                "size": len(model.members[k]),
                 "policy": swarm.policy,
                 "pucks": model.pucks[k],
                 "sud": swarm_utility_difference(model.pucks, k),

@@ -14,6 +14,7 @@ from agents.errors import InputError
 from scenarios.cli.calibrate import calibrate
 from scenarios.cli.catalogue import list_scenarios, show
 from scenarios.cli.conflicts import conflicts
+from scenarios.cli.contribution import contribution
 from scenarios.cli.explore import explore
 from scenarios.cli.film import film
 from scenarios.cli.report import report
@@ -101,4 +102,5 @@ app.command(epilog="Example: kswarms calibrate --free friction,gamma --densities
 app.command(epilog="Example: kswarms explore fig-6.4b")(explore)
 app.command(epilog="Example: kswarms film fig-6.1c --n 50 --to 120 --out fight.gif")(film)
 app.command(epilog="Example: kswarms conflicts fig-6.4b --n 6 --robot 3 --from 0")(conflicts)
+app.command(epilog="Example: kswarms contribution fig-6.4b --n 16 --robots S2 --seeds 5")(contribution)
 app.command(epilog="Example: kswarms report results --out report.html")(report)

@@ -63,6 +63,7 @@ def games(draw: st.DrawFn, swarms: st.SearchStrategy[int] = st.integers(1, 5)) -
         duration=draw(st.sampled_from([5.0, 30.0, 9.97])),
         puck_limit=draw(st.sampled_from([None, 1, 2])),
         supply=draw(st.sampled_from([None, 1, 4])),
+        absent=tuple(draw(st.sets(st.integers(0, n - 1), max_size=min(3, n - 1)))),
     )
 
 
@@ -111,11 +112,12 @@ def check_results(model: GameModel) -> None:
     total = sum(row["pucks"] for row in rows)
     assert sum(row["sud"] for row in rows) == (2 - len(rows)) * total
     period = game.parameters.period
+    assert sum(row["size"] for row in rows) == game.size - len(game.absent)
     for row, swarm, members in zip(rows, game.swarms, model.members, strict=True):
-        assert (row["size"], row["policy"]) == (swarm.size, swarm.policy)
+        assert (row["size"], row["policy"]) == (len(members), swarm.policy)
         assert row["pucks"] == sum(robot.pucks for robot in members)
         played = row["t_a_intra"] + row["t_a_inter"] + row["t_p"]
-        assert played == pytest.approx(swarm.size * row["duration"], abs=1e-6)
+        assert played == pytest.approx(row["size"] * row["duration"], abs=1e-6)
         begun = row["conflicts_intra"] + row["conflicts_inter"]
         assert begun == sum(sum(robot.conflicts) for robot in members)
         assert row["duration"] == pytest.approx(model.env.now * period)

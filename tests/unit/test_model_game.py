@@ -1,5 +1,6 @@
 """A game as data: its defaults, what it derives, and what it refuses."""
 
+import json
 import math
 import pickle
 from typing import Any
@@ -76,6 +77,12 @@ def test_every_layout_has_an_arena(layout: str) -> None:
         ({"swarms": ({"size": 2},)}, "swarms.0.policy=None: is required"),
         ({"layout": "round"}, "layout='round': must be one of symmetric, nearer-station, random-stations"),
         ({"body": "epuck"}, "body='epuck': must be one of krembot-sim, krembot, "),
+        ({"absent": (20,)}, "absent=20: must be a robot of the game, 0 to 19"),
+        ({"absent": (3, -1)}, "absent=-1: must be a robot of the game, 0 to 19"),
+        ({"absent": (3, 4, 3)}, "absent=(3, 3, 4): must name each robot once"),
+        ({"absent": (0,), "swarms": ({"policy": "avoid", "size": 1},)}, "absent=(0,): must leave a robot"),
+        ({"absent": (1.5,)}, "absent.0=1.5: must be a valid integer"),
+        ({"absent": (1,), "absent_from": "dinner"}, "absent_from='dinner': must be 'learning' or 'game'"),
         ({"side": 0}, "side=0: must be greater than 0"),
         ({"side": -2.0}, "side=-2.0: "),
         ({"side": math.nan}, "side=nan: "),
@@ -161,3 +168,27 @@ def test_apportioned_sizes_are_the_proportions_rounded(n: int, shares: list[int]
         for other, its_share in enumerate(shares):
             if share > its_share or (share == its_share and k < other):
                 assert sizes[k] >= sizes[other]
+
+
+# Absent robots.
+
+
+def test_the_absent_are_named_in_any_order() -> None:
+    assert game(absent=(7, 3)) == game(absent=[3, 7])
+    assert game(absent=(3, 7)).absent == (3, 7)
+    assert game(absent=(3, 7)).size == 20
+
+
+def test_a_game_with_all_its_robots_is_described_as_ever() -> None:
+    """A field more would rename every run."""
+    fields = {*Game.model_fields} - {"absent", "absent_from"}
+    assert {*game().model_dump()} == {*json.loads(game().model_dump_json())} == fields
+    assert game(absent_from="game").model_dump() == game().model_dump()
+
+
+@pytest.mark.parametrize("absent_from", ["learning", "game"])
+def test_a_game_with_absent_robots_can_be_made_from_its_description(absent_from: str) -> None:
+    some = game(absent=(3, 19), absent_from=absent_from)
+    assert Game(**json.loads(some.model_dump_json())) == some
+    assert Game(**some.model_dump()) == some
+    assert {"absent", "absent_from"} <= {*some.model_dump()}

@@ -1,0 +1,101 @@
+"""``contribution``: what robots contributed to their swarm, by playing the game without them."""
+
+from collections.abc import Generator, Sequence
+from contextlib import closing
+from functools import partial
+from pathlib import Path
+from typing import Annotated, Any, Final, Literal
+
+import typer
+
+from agents.errors import InputError
+from scenarios.choice import chosen
+from scenarios.cli.options import Jobs, processes
+from scenarios.runner import Outcome, play_all
+from scenarios.runs import Run
+
+# Of a printed table: as wide as it is, for rich would break the cells in a pipe's 80 columns.
+_ANY_WIDTH: Final = 1000
+
+
+def contribution(
+    wanted: Annotated[str, typer.Argument(metavar="ID", help="A scenario of the list.")],
+    condition: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Which curve of it, if it has several.")
+    ] = None,
+    n: Annotated[int, typer.Option(help="Robots in all.")] = 26,
+    robots: Annotated[
+        str | None,
+        typer.Option(metavar="LIST", help="Robots, from 0, and swarms, as 3,7 or S2. [default: all]"),
+    ] = None,
+    seeds: Annotated[int, typer.Option(help="Games with all robots, each also played without each.")] = 20,
+    first_seed: Annotated[int, typer.Option(help="Seed of the first of these games.")] = 0,
+    absent_from: Annotated[
+        Literal["learning", "game"],
+        typer.Option(help="Whether they are absent from the learning too, or from the measured game alone."),
+    ] = "learning",
+    jobs: Jobs = None,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Where the results go.")] = Path("results"),
+) -> None:
+    """Measure what robots contributed: play the same games without each, and compare with its rewards."""
+    scenarios = chosen([wanted])
+    if len(scenarios) > 1:
+        raise InputError("id", wanted, f"must be one scenario: {', '.join(each.id for each in scenarios)}")
+    scenario = scenarios[0]
+    names = [each.name for each in scenario.conditions]
+    if condition is None and len(names) > 1:
+        raise InputError("condition", condition, f"must be one of {', '.join(map(repr, names))}")
+    name = names[0] if condition is None else condition
+    game = scenario.game(name, n)
+    for option, value, least in (("seeds", seeds, 1), ("first_seed", first_seed, 0)):
+        if value < least:
+            raise InputError(option, value, f"must be at least {least}")
+    workers = processes(jobs)
+
+    from analysis.contribution import time_sud
+    from scenarios.contribution import contributions, prepare_table, robots_of, write_table
+
+    numbers = robots_of(game, robots)
+    prepare_table(out)
+    rows = contributions(
+        game,
+        numbers,
+        range(first_seed, first_seed + seeds),
+        absent_from,
+        label=(scenario.id, name),
+        play=partial(_play, workers),
+        time_sud=time_sud,
+    )
+    typer.echo(f"table:  {write_table(out, rows)}")
+    _show(out, scenario.id, scenario.title, rows[0])
+
+
+def _play(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, Outcome], None, None]:
+    from rich.console import Console
+    from rich.progress import track
+
+    from scenarios.contribution import RECORD
+
+    with closing(play_all(runs, jobs, RECORD)) as played:
+        yield from track(played, "playing", total=len(runs), console=Console(stderr=True))
+
+
+def _show(out: Path, scenario: str, title: str, question: dict[str, Any]) -> None:
+    """Draw what was found and print it."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from analysis.contribution import of_question, read
+    from analysis.contribution_shown import draw, printed
+
+    named = {name: question[name] for name in ("condition", "n", "absent_from")}
+    typer.echo(f"figure: {draw(out, title, scenario=scenario, **named)}")
+    rows = of_question(read(out), scenario=scenario, **named)
+    console = Console(width=_ANY_WIDTH, highlight=False)
+    for heading, (header, *lines) in printed(rows):
+        table = Table()
+        for name in header:
+            table.add_column(name, justify="right")
+        for cells in lines:
+            table.add_row(*cells)
+        console.print(f"\n{heading}", table, sep="\n")

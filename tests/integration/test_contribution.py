@@ -1,0 +1,76 @@
+"""``kswarms contribution``: what it prints and writes, and how it refuses."""
+
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import pytest
+
+from scenarios.cli import invoke
+
+FEW = ["--n", "6", "--seeds", "2", "--jobs", "1"]
+
+
+@pytest.fixture(autouse=True)
+def _in_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def test_it_writes_a_table_and_a_figure_and_prints_what_was_found(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["contribution", "fig-6.1c", *FEW, "--robots", "S2,0", "--first-seed", "3"]) == 0
+    out = capsys.readouterr().out
+    table, figure = Path("results/contribution.parquet"), Path("results/figures/contribution-fig-6.1c.png")
+    assert out.splitlines()[:2] == [f"table:  {table}", f"figure: {figure}"]
+    assert figure.read_bytes().startswith(b"\x89PNG")
+    rows = pq.read_table(table).to_pylist()
+    asked = [(3, 0), (3, 3), (3, 4), (3, 5), (4, 0), (4, 3), (4, 4), (4, 5)]
+    assert [(row["seed"], row["robot"]) for row in rows] == asked
+    assert {row["absent_from"] for row in rows} == {"learning"}
+    assert all(row["time_sud"] == row["time_sud"] != row["time_sud_without"] for row in rows)
+    for heading in ("contribution of each robot", "rank correlation", "seconds of the others"):
+        assert heading in out
+    assert "mean of S2" in out
+
+
+def test_another_condition_is_kept_beside_the_first() -> None:
+    for condition in ("delta=0.25", "random"):
+        asked = ["--condition", condition, "--robots", "5", "--absent-from", "game", "--seeds", "1"]
+        assert invoke(["contribution", "fig-6.12", *FEW, *asked, "--out", "here"]) == 0
+    rows = pq.read_table("here/contribution.parquet").to_pylist()
+    assert [(row["condition"], row["absent_from"]) for row in rows] == [
+        ("delta=0.25", "game"),
+        ("random", "game"),
+    ]
+
+
+def test_help_has_an_example(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["contribution", "--help"]) == 0
+    assert "Example: kswarms contribution fig-6.4b" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        ("fig-6.1", "id='fig-6.1': must be a scenario or table of the list; did you mean "),
+        ("table-6.1", "id='table-6.1': must be one scenario: fig-6.4a, fig-6.4b"),
+        ("fig-6.12", "condition=None: must be one of 'delta=0.02', "),
+        ("fig-6.12 --condition dleta=0.02", "condition='dleta=0.02': must be one of 'delta=0.02', "),
+        ("fig-6.4b --n 7", "n=7: must be a multiple of 2"),
+        ("fig-6.4b --n 6 --robots 6", "robots='6': must be robots, 0 to 5, or swarms, S1, S2"),
+        ("fig-6.4b --robots S3", "robots='S3': must be robots, 0 to 25, or swarms, S1, S2"),
+        ("fig-6.4b --seeds 0", "seeds=0: must be at least 1"),
+        ("fig-6.4b --first-seed -1", "first_seed=-1: must be at least 0"),
+        ("fig-6.4b --jobs 0", "jobs=0: must be at least 1"),
+        ("fig-6.4b --absent-from dinner", "Invalid value for '--absent-from': "),
+        ("fig-6.4b --n x", "Invalid value for '--n': "),
+        ("", "Missing argument 'ID'"),
+    ],
+)
+def test_bad_input_is_one_line_and_nothing_is_written(
+    arguments: str, line: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke(["contribution", *arguments.split()]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith(f"kswarms: {line}")
+    assert captured.err.count("\n") == 1
+    assert not list(Path().iterdir())
