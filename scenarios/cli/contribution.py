@@ -10,7 +10,7 @@ import typer
 
 from agents.errors import InputError
 from scenarios.choice import chosen
-from scenarios.cli.options import Jobs, processes
+from scenarios.cli.options import Jobs, processes, scenario_ids
 from scenarios.runner import Outcome, play_all
 from scenarios.runs import Run
 
@@ -19,7 +19,14 @@ _ANY_WIDTH: Final = 1000
 
 
 def contribution(
-    wanted: Annotated[str, typer.Argument(metavar="ID", help="A scenario of the list.")],
+    wanted: Annotated[
+        str,
+        typer.Argument(
+            metavar="ID",
+            help="A scenario of the list, or my.toml with one.",
+            autocompletion=scenario_ids,
+        ),
+    ],
     condition: Annotated[
         str | None, typer.Option(metavar="NAME", help="Which curve of it, if it has several.")
     ] = None,

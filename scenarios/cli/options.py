@@ -7,6 +7,7 @@ from typing import Annotated, Final
 import typer
 
 from agents.errors import InputError
+from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.choice import chosen
 from scenarios.runs import Run, digest
 
@@ -33,8 +34,28 @@ def processes(jobs: int | None) -> int:
     return jobs
 
 
+
+
+def ids(incomplete: str) -> list[tuple[str, str]]:
+    """Return the scenarios and tables whose ids begin so, each with its title: what the shell completes."""
+    return [
+        (name, entry.title) for name, entry in (CATALOGUE | TABLES).items() if name.startswith(incomplete)
+    ]
+
+
+def scenario_ids(incomplete: str) -> list[tuple[str, str]]:
+    """Return `ids` without those of tables."""
+    return [(name, title) for name, title in ids(incomplete) if name in CATALOGUE]
+
+
 Watched = Annotated[
-    str | None, typer.Argument(metavar="[ID|DIR]", help="A scenario; with --run, a directory of results.")
+    str | None,
+    typer.Argument(
+        metavar="ID|DIR",
+        help="A scenario or table of the list, or my.toml; with --run, a directory of results. "
+        f"[default: {FIRST_SCENARIO}]",
+        autocompletion=ids,
+    ),
 ]
 RunDigest = Annotated[
     str, typer.Option(metavar="DIGEST", help="A run of DIR, played again: the column `run` of its tables.")

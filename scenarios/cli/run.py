@@ -12,6 +12,7 @@ from agents.errors import InputError
 from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.choice import chosen, integers, planned, words
 from scenarios.cli.options import Jobs, processes
+from scenarios.cli.options import ids as ids_to_complete
 from scenarios.cli.progress import KINDS, check_kind, told
 from scenarios.description import Scenario
 from scenarios.runner import RECORDS
@@ -25,7 +26,9 @@ def run(
     ids: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="ID...", help="Scenarios or tables of the list, or files of your own: my.toml."
+            metavar="ID",
+            help="Scenarios or tables of the list, or files of your own: my.toml.",
+            autocompletion=ids_to_complete,
         ),
     ] = None,
     everything: Annotated[

@@ -153,10 +153,10 @@ def test_a_session_that_is_closed_plays_no_more(session: Session) -> None:
 def test_the_browser_is_given_plain_data(session: Session) -> None:
     player = session.player
     scene = scene_of(player)
-    assert scene["swarm"] == [0] * 10 + [1] * 10
     assert len(scene["bases"]) == len(scene["colours"]) == 2
     frame = frame_of(player, 3, 5, sectors=False, sensors=True)
     assert (frame["number"], frame["time"], frame["pucks"], frame["supply"]) == (3, 0.0, (0, 0), [-1, -1])
+    assert (frame["swarm"], frame["robots"]) == ([0] * 10 + [1] * 10, tuple(range(20)))
     assert len(frame["sensors"]) == 8
     positions = player.picture().positions
     assert frame["x"] == pytest.approx(positions[:, 0], abs=1e-4)
