@@ -9,6 +9,7 @@ import typer
 
 from agents.errors import InputError
 from scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Watched, one_run
+from scenarios.cli.progress import tracked
 from scenarios.runner import name_of, naming
 
 if TYPE_CHECKING:
@@ -31,11 +32,14 @@ def film(
     end: Annotated[
         float | None, typer.Option("--to", help="Last instant (s). [default: the end of the game]")
     ] = None,
-    speed: Annotated[float, typer.Option(help="Seconds of the game in a second of the film.")] = 10.0,
-    fps: Annotated[int, typer.Option(help="Pictures a second.")] = 20,
-    size: Annotated[int, typer.Option(help="Width of a picture (pixels).")] = 720,
+    speed: Annotated[
+        float, typer.Option(help="Seconds of the game in a second of the film, above 0.")
+    ] = 10.0,
+    fps: Annotated[int, typer.Option(help="Pictures a second, 1 to 60.")] = 20,
+    size: Annotated[int, typer.Option(help="Width of a picture (pixels), 64 to 4096.")] = 720,
     sheet: Annotated[
-        int | None, typer.Option(metavar="K", help="Write a contact sheet of K instants instead, a PNG.")
+        int | None,
+        typer.Option(metavar="K", help="Write a contact sheet of K instants, 1 to 100, instead: a PNG."),
     ] = None,
     out: Annotated[
         Path | None,
@@ -91,9 +95,6 @@ def _check(field: str, value: object, allowed: bool, rule: str) -> None:
 
 def _pictures(player: "Player", instants: list[float], size: int, played: str) -> Iterator["Image"]:
     """Play to each instant and paint it; the end of the game is the last, if it comes before."""
-    from rich.console import Console
-    from rich.progress import track
-
     from analysis.arena import ArenaPainter, Ground
 
     arena = player.model.arena
@@ -102,7 +103,7 @@ def _pictures(player: "Player", instants: list[float], size: int, played: str) -
         player.game.body_preset.radius,
     )
     painter = ArenaPainter(ground, size)
-    for instant in track(instants, "filming", console=Console(stderr=True), transient=True):
+    for instant in tracked(instants, "filming", len(instants)):
         with naming(played):
             player.seek(instant)
         yield _paint(painter, player.picture())

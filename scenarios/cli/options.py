@@ -16,7 +16,9 @@ FIRST_SCENARIO: Final = "fig-6.1c"
 USUAL_N: Final = 20
 """… and with how many robots, or nearly."""
 
-Jobs = Annotated[int | None, typer.Option(help="Processes that play. [default: one for each CPU]")]
+Jobs = Annotated[
+    int | None, typer.Option(help="Processes that play, at least 1. [default: one for each CPU]")
+]
 
 
 def processes(jobs: int | None) -> int:
@@ -32,8 +34,6 @@ def processes(jobs: int | None) -> int:
     if jobs < 1:
         raise InputError("jobs", jobs, "must be at least 1")
     return jobs
-
-
 
 
 def ids(incomplete: str) -> list[tuple[str, str]]:
@@ -74,16 +74,24 @@ def asked(what: str | None, run: str) -> str | Run:
         return what or FIRST_SCENARIO
     if what is None:
         raise InputError("run", run, "needs the directory of results that has it")
-    from scenarios.ledger import find_run
+    from scenarios.recorded import recorded_run
 
-    return find_run(Path(what), run)
+    return recorded_run(Path(what), run)
 
 
 ConditionName = Annotated[
-    str | None, typer.Option("--condition", help="Curve of the scenario. [default: its first]")
+    str | None,
+    typer.Option(
+        "--condition",
+        metavar="NAME",
+        help="Curve of the scenario, as `kswarms show` names it. [default: its first]",
+    ),
 ]
-Robots = Annotated[int | None, typer.Option("--n", help="Robots in all. [default: near 20]")]
-Seed = Annotated[int | None, typer.Option("--seed", help="Seed of the game. [default: 0]")]
+Robots = Annotated[
+    int | None,
+    typer.Option("--n", help="Robots in all, as the shares of its swarms allow. [default: near 20]"),
+]
+Seed = Annotated[int | None, typer.Option("--seed", help="Seed of the game, at least 0. [default: 0]")]
 
 
 def one_run(what: str | None, run: str, condition: str | None, n: int | None, seed: int | None) -> Run:

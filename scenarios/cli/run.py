@@ -35,15 +35,21 @@ def run(
         bool, typer.Option("--all", help="All scenarios, each with those --densities that suit it.")
     ] = False,
     densities: Annotated[
-        str | None, typer.Option(metavar="N,N,...", help="Robots in all. [default: the scenario's own]")
+        str | None,
+        typer.Option(
+            metavar="N,N,...", help="Robots in all, as the shares of its swarms allow. [default: its own]"
+        ),
     ] = None,
     seeds: Annotated[
-        int | None, typer.Option(help="Games for each density. [default: the scenario's own]")
+        int | None, typer.Option(help="Games for each density, at least 1. [default: its own]")
     ] = None,
-    first_seed: Annotated[int, typer.Option(help="Seed of the first of these games.")] = 0,
+    first_seed: Annotated[int, typer.Option(help="Seed of the first of these games, at least 0.")] = 0,
     jobs: Jobs = None,
     scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Play on the Dask cluster of this scheduler.")
+        str | None,
+        typer.Option(
+            metavar="ADDRESS", help="Play on the Dask cluster of this scheduler, as tcp://host:8786."
+        ),
     ] = None,
     out: Annotated[
         Path, typer.Option(metavar="DIR", help="Where the results go, and are gone on from.")

@@ -162,7 +162,7 @@ def _Transport(
     def button(label: str, icon: str, action: Callable[[], None], **rest: Any) -> None:
         solara.Button(label, icon_name=icon, on_click=lambda: act(action), small=True, **rest)
 
-    with solara.Row(gap="6px", style={"flex-wrap": "wrap", "align-items": "center"}):
+    with solara.Row(gap="6px", style={"flex-wrap": "wrap", "align-items": "center", "row-gap": "6px"}):
         button(
             "Pause" if runs else "Play", "mdi-pause" if runs else "mdi-play", session.play, color="primary"
         )

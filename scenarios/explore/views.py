@@ -121,7 +121,7 @@ def _chart(lines: list[Json], began: float, now: float, most: float | None = Non
     # Of one instant alone, or of none, ECharts would make an axis of its own.
     return {
         "animation": False,
-        "grid": {"left": 48, "right": 16, "top": 34, "bottom": 36},
+        "grid": {"left": 48, "right": 28, "top": 34, "bottom": 36},
         "legend": {"top": 0, "itemWidth": 28, "type": "scroll"},
         "tooltip": {"trigger": "axis"},
         "xAxis": {"type": "value", "name": "t (s)", "nameLocation": "middle", "nameGap": 22}

@@ -9,6 +9,7 @@ from scenarios.catalogue import CATALOGUE
 from scenarios.explore import session as session_module
 from scenarios.explore.session import Session
 from scenarios.explore.views import curves_of, frame_of, scene_of
+from scenarios.runner import RunError
 from scenarios.runs import Run, digest
 
 
@@ -188,6 +189,18 @@ def test_once_the_game_has_begun_only_what_is_learned_is_shown_from_before_it() 
     assert set(first.values()) == {0.0}
 
 
+def test_a_chart_of_no_time_yet_begins_where_its_game_does() -> None:
+    session = Session("fig-6.4b")
+
+    def axes() -> set[tuple[float, float]]:
+        axes = (chart["xAxis"] for chart in curves_of(session.player.history).values())
+        return {(axis["min"], axis["max"]) for axis in axes}
+
+    assert axes() == {(-3000.0, -2990.0)}
+    session.player.advance(60.0)
+    assert axes() == {(-3000.0, -2940.0)}
+
+
 def test_a_game_that_fails_stops_and_says_why(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
     def choose(_opponent: int) -> None:
         raise ZeroDivisionError("by zero")
@@ -231,3 +244,11 @@ def test_a_policy_of_a_file_of_ones_own_plays(session: Session, tmp_path: Path) 
     file.write_text("class Coward:\n    pass\n")
     session.change_swarm(1, policy=f"{file}:Cowerd")
     assert "has no class Cowerd" in session.error
+
+
+def test_a_policy_that_fails_before_its_game_is_told_as_a_run_that_failed(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(session_module, "Player", lambda *_: 1 // 0)
+    with pytest.raises(RunError, match=r"the game of fig-6\.1c failed: ZeroDivisionError: integer"):
+        Session("fig-6.1c")
