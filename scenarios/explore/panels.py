@@ -70,7 +70,7 @@ def _Robot(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     solara.Text("Sensors: free distance (m), active ones bold", classes=["kswarms-heading"])
     _Table(
         header=[f"{round(math.degrees(sensor.angle))}°" for sensor in view.sensors],
-        rows=[[f"{'*' if sensor.active else ''}{sensor.free:.2f}" for sensor in view.sensors]],
+        rows=[[f"{'*' if sensor.active else ''}{sensor.free:z.2f}" for sensor in view.sensors]],
     )
     for opponent, arms in view.bandits.items():
         whom = "its own swarm" if opponent == view.swarm else f"S{opponent}"
@@ -117,8 +117,8 @@ def _Conflicts(session: Session, beat: solara.Reactive[int], act: Act) -> None:
 
 
 _HEADER: Final = (
-    *("t (s)", "who → met", "where (m)", "known: Q (N)", "chose", "R (s)"),
-    *("Q after", "T(a)", "T(p)", "n′", "saw"),
+    *("t (s)", "who →\nmet", "where\n(m)", "known:\nQ (N)", "chose\nR (s)"),
+    *("Q\nafter", "T(a)\n(s)", "T(p)\n(s)", "n′", "saw"),
 )
 
 
@@ -130,8 +130,7 @@ def _conflict_row(account: ConflictAccount, begin: float) -> list[str]:
         f"{cell['who']} →\n{cell['met']}",
         cell["where (m)"].replace(", ", "\n"),
         cell["known: Q (N)"].replace(", ", "\n"),
-        cell["chose"],
-        cell["R"],
+        f"{cell['chose']}\n{cell['R']}",
         *(cell[name] for name in ("Q after", "T(a)", "T(p)", "n′")),
         cell["saw"].replace(", ", "\n"),
     ]
