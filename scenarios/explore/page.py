@@ -89,6 +89,13 @@ def Page() -> None:  # components are written like classes, as solara has it
             Panels(session, beats.panels, act)
 
 
+@solara.component
+def Layout(children: list[Any]) -> None:
+    """Show the controls beside the page, or on a button where there is no room; solara asks for the name."""
+    # None leaves it to the browser; True, solara's default, would hide the arena of a narrow window.
+    solara.AppLayout(children=children, sidebar_open=None)
+
+
 def _run(session: Session, beats: Beats) -> Callable[[], None]:
     """Start the thread that lets the game run; return what ends it."""
     over = threading.Event()

@@ -113,6 +113,17 @@ class Browser:
     def time(self) -> str:
         return self.text("[data-test=time]")
 
+    def on_top(self, element: Any) -> bool:
+        """Return whether nothing else is over an element."""
+        return bool(
+            self.driver.execute_script(
+                "const box = arguments[0].getBoundingClientRect();"
+                "const [x, y] = [box.x + box.width / 2, box.y + Math.min(100, box.height / 2)];"
+                "return document.elementFromPoint(x, y) === arguments[0]",
+                element,
+            )
+        )
+
     def frames(self) -> int:
         return int(self.driver.execute_script("return window.kswarmsFrames"))
 
@@ -162,6 +173,7 @@ def browse(address: str) -> Iterator[Callable[..., Browser]]:
 def test_the_page_plays_changes_and_shows_a_learner(browse: Callable[..., Browser], address: str) -> None:
     browser = browse()
     assert browser.time() == "learning, 3000.0 s to the game"
+    assert browser.on_top(browser.all("label", "Robots N")[0])
 
     browser.click("button", "play")
     browser.wait(lambda: browser.time() < "learning, 2990" and browser.time().startswith("learning, 29"))
@@ -252,4 +264,7 @@ def test_a_narrow_window_has_everything_below_each_other(browse: Callable[..., B
     assert farthest <= width
     canvas = browser.all("canvas")[0]
     assert 0.8 * width < canvas.size["width"] <= width
+    assert browser.on_top(canvas)  # not the controls
+    browser.click("button[class*=nav-icon]", "")
+    browser.wait(lambda: not browser.on_top(canvas))
     assert browser.all(".v-tab")[0].location["y"] > canvas.location["y"] + canvas.size["height"]

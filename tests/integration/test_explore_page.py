@@ -15,14 +15,15 @@ solara = pytest.importorskip("solara", reason="needs the extra `explore`")
 import ipyvuetify  # noqa: E402  # which comes with solara
 
 from agents.errors import InputError  # noqa: E402
+from scenarios.catalogue import CATALOGUE  # noqa: E402
 from scenarios.explore import page  # noqa: E402
 from scenarios.explore.session import Session  # noqa: E402
+from scenarios.runs import Run, digest  # noqa: E402
 
 
 @solara.component
 def _App() -> None:  # noqa: N802  # a component
-    with solara.AppLayout():
-        page.Page()
+    page.Layout(children=[page.Page()])
 
 
 class Shown:
@@ -82,7 +83,7 @@ def show(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str], Shown]]:
     shown: list[Shown] = []
     monkeypatch.setattr(page, "_GIVE_UP", 0.02)  # there is no browser that would draw
 
-    def render(start: str) -> Shown:
+    def render(start: str | Run) -> Shown:
         session = Session(start)
         monkeypatch.setattr(page, "Session", lambda _: session)
         shown.append(Shown(session))
@@ -187,6 +188,23 @@ def test_every_control_changes_the_game(show: Callable[[str], Shown]) -> None:
     shown.find(ipyvuetify.Combobox, "Scenario").v_model = "fig-6.1a"
     assert session.curves.keys() == {""}
     assert session.player.game.swarms[1].policy == "avoid"
+
+
+def test_who_is_absent_is_told_and_can_come_back(show: Callable[[str | Run], Shown]) -> None:
+    game = CATALOGUE["fig-6.4b"].game("", 6).replace(absent=(0, 3), absent_from="game")
+    shown = show(Run(digest(game, 2), game, 2, (("fig-6.4b", ""),)))
+    session = shown.session
+    assert shown.find(ipyvuetify.TextField, "Absent robots (they learn)").v_model == "0, 3"
+    shown.click("Skip learning")
+    _wait(lambda: shown.arena().frame["robots"] == (1, 2, 4, 5))
+    _wait(lambda: "Skip learning" not in shown.texts())
+    shown.open(1)
+    session.choose(3)
+    shown.click("Step")
+    assert "Robot 3 is absent." in shown.texts()
+    shown.write("Absent robots", "")
+    assert session.player.game.absent == ()
+    assert "Absent robots" not in shown.texts()
 
 
 def test_the_world_can_be_changed_by_sliders_and_in_words(show: Callable[[str], Shown]) -> None:
