@@ -195,16 +195,16 @@ def test_who_is_absent_is_told_and_can_come_back(show: Callable[[str | Run], Sho
     shown = show(Run(digest(game, 2), game, 2, (("fig-6.4b", ""),)))
     session = shown.session
     assert shown.find(ipyvuetify.TextField, "Absent robots (they learn)").v_model == "0, 3"
+    shown.open(1)
+    shown.write("Robot, 0 to 5", 3)
+    assert shown.tables()[0].rows[0] == ["robot", "3 of S2, inter-learner"]
     shown.click("Skip learning")
+    _wait(lambda: "Robot 3 is absent." in shown.texts())
     _wait(lambda: shown.arena().frame["robots"] == (1, 2, 4, 5))
     _wait(lambda: "Skip learning" not in shown.texts())
-    shown.open(1)
-    session.choose(3)
-    shown.click("Step")
-    assert "Robot 3 is absent." in shown.texts()
     shown.write("Absent robots", "")
     assert session.player.game.absent == ()
-    assert "Absent robots" not in shown.texts()
+    _wait(lambda: "Absent robots" not in shown.texts())
 
 
 def test_the_world_can_be_changed_by_sliders_and_in_words(show: Callable[[str], Shown]) -> None:
