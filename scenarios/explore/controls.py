@@ -92,6 +92,19 @@ def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:
             )
 
 
+def _slider(
+    label: str, value: float, least: float, most: float, step: float, on_value: Callable[..., None]
+) -> None:
+    """Show a slider that leaves a value between two steps alone: a browser says the nearest by itself."""
+    nearest = least + round((value - least) / step) * step
+
+    def moved(to: float) -> None:
+        if abs(to - nearest) > step / 4:
+            on_value(to)
+
+    solara.SliderFloat(label, value, min=least, max=most, step=step, on_value=moved)
+
+
 # No components of their own: such a one is drawn anew only where its arguments are others.
 
 
@@ -128,19 +141,19 @@ def _swarm(session: Session, k: int, act: Act) -> None:
             class_="kswarms-policy",
         )
         solara.InputInt("Share of the robots", swarm.share, on_value=lambda share: change(share=share))
-        solara.SliderFloat(
+        _slider(
             f"Drive in P {swarm.drive:g}",
             swarm.drive,
-            min=0.05,
-            max=1.0,
+            least=0.05,
+            most=1.0,
             step=0.05,
             on_value=lambda drive: change(drive=drive),
         )
-        solara.SliderFloat(
+        _slider(
             f"Drive in A {swarm.drive_action:g}",
             swarm.drive_action,
-            min=0.05,
-            max=1.0,
+            least=0.05,
+            most=1.0,
             step=0.05,
             on_value=lambda drive: change(drive_action=drive),
         )
@@ -163,11 +176,11 @@ def _learning(session: Session, act: Act) -> None:
             on_value=lambda name: change("reward", name),
         )
         if learning.delta is not None:
-            solara.SliderFloat(
+            _slider(
                 f"Δ = {learning.delta:g}",
                 learning.delta,
-                min=0.0,
-                max=0.5,
+                least=0.0,
+                most=0.5,
                 step=0.005,
                 on_value=lambda delta: change("reward", delta=delta),
             )
@@ -178,11 +191,11 @@ def _learning(session: Session, act: Act) -> None:
             on_value=lambda name: change("rule", name),
         )
         if learning.gamma is not None:
-            solara.SliderFloat(
+            _slider(
                 f"γ = {learning.gamma:g}",
                 learning.gamma,
-                min=0.0,
-                max=1.0,
+                least=0.0,
+                most=1.0,
                 step=0.005,
                 on_value=lambda gamma: change("rule", gamma=gamma),
             )
@@ -202,11 +215,11 @@ def _world(session: Session, change: Callable[..., None], act: Act) -> None:
         parameters = None  # the message above the arena says what is wrong with them
     if parameters is not None:
         for name, (label, least, greatest, step) in _SLIDERS.items():
-            solara.SliderFloat(
+            _slider(
                 f"{label} {getattr(parameters, name):.4g}",
                 getattr(parameters, name),
-                min=least,
-                max=greatest,
+                least=least,
+                most=greatest,
                 step=step,
                 on_value=lambda value, name=name: act(lambda: session.change_parameter(name, value)),
             )

@@ -213,9 +213,9 @@ def test_the_page_plays_changes_and_shows_a_learner(browse: Callable[..., Browse
 
 def test_a_mistake_is_told_in_the_page(browse: Callable[..., Browser]) -> None:
     browser = browse()
-    field = next(f for f in browser.all("input") if f.get_attribute("value") == "inter-learner")
+    field = next(f for f in browser.all("input") if f.get_attribute("value") == "attack")
     field.send_keys("x\n")
-    browser.wait(lambda: browser.all(".v-alert", "policy='inter-learnerx': must be one of avoid"))
+    browser.wait(lambda: browser.all(".v-alert", "policy='attackx': must be one of avoid"))
     assert browser.complaints() == []
 
 
