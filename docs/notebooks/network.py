@@ -63,7 +63,7 @@ jams_figure(jams(conflicts), "36 robots, S1 avoids, S2 attacks")
 # %% [markdown]
 # ## Where conflicts happen
 #
-# Conflicts begun in each 5 × 5 cm, on a logarithmic scale, and those that the robot answered with each action.
+# Conflicts begun in each 5 × 5 cm, on a logarithmic scale: all, and those answered with each action.
 
 # %%
 heat_maps(conflicts, "36 robots, S1 avoids, S2 attacks", places=model.arena)

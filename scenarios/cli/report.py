@@ -34,7 +34,10 @@ def report(
         bool, typer.Option("--colour-blind", help="Colours of swarms that everybody tells apart.")
     ] = False,
 ) -> None:
-    """Write figures, tables and verdicts of all results into one HTML file that needs no network."""
+    """Write all results of a directory into one HTML file.
+
+    Figures, tables, and verdicts on findings; the file needs no network.
+    """
     from analysis.findings import FINDINGS, load
     from analysis.report import Planned
     from analysis.report import report as report_on

@@ -11,7 +11,10 @@ Directory = Annotated[Path, typer.Argument(metavar="DIR", help="What `kswarms ru
 
 
 def status(directory: Directory) -> None:
-    """Tell what is done, what failed and why, what is missing, and what it took."""
+    """Tell what is done, what failed and what is missing.
+
+    Of each failed run, also why, and the command that plays it again.
+    """
     from scenarios.ledger import FILE, Ledger
     from scenarios.overview import by_scenario, codes, failures, in_all
     from scenarios.study import holder, replay_command
@@ -44,7 +47,10 @@ def replay(
     directory: Directory,
     wanted: Annotated[str, typer.Argument(metavar="RUN", help="A run of its tables: the column `run`.")],
 ) -> int:
-    """Play one run again, print what comes out of it, and tell whether DIR has the same. Write nothing."""
+    """Play one run again, and tell whether DIR has the same.
+
+    What comes out of it is printed; nothing is written.
+    """
     from scenarios.ledger import FILE, Ledger
     from scenarios.runner import name_of, play
 
