@@ -49,7 +49,8 @@ pd.DataFrame(between.own.round(9), index=ACTIONS, columns=ACTIONS)
 # within a swarm. Its edges are zero-sum, its loops are not.
 
 # %%
-graph = polymatrix({(k, m): within if k == m else between for k in (1, 2, 3) for m in (1, 2, 3) if k <= m})
+pairs = [(k, m) for k in (1, 2, 3) for m in (1, 2, 3) if k <= m]
+graph = polymatrix({(k, m): within if k == m else between for k, m in pairs})
 print("between swarms zero-sum:", is_pairwise_zero_sum(graph), "| within:", within.is_zero_sum())
 draw_polymatrix(graph)
 
@@ -60,7 +61,8 @@ draw_polymatrix(graph)
 # eight that attack, and every conflict is recorded.
 
 # %%
-game = Game(swarms=(Swarm(policy="avoid", size=8), Swarm(policy="attack", size=8)), duration=300)
+swarms = (Swarm(policy="avoid", size=8), Swarm(policy="attack", size=8))
+game = Game(swarms=swarms, duration=300)
 model = GameModel(game, seed=1, record="conflicts")
 model.play()
 conflicts = pd.DataFrame(model.tables()["conflicts"])
@@ -93,14 +95,14 @@ axes.set(xlabel="utility of the robot, U (s)", ylabel="Wonderful Life Utility, W
 # %%
 rows = contributions(game, robots_of(game, "8,9"), range(6), label=("avoid-attack", ""), time_sud=time_sud)
 question = of_question(pd.DataFrame(rows))
-question[["seed", "robot", "sud", "sud_without", "pucks", "reward"]].head(4)
+question[["seed", "robot", "sud", "sud_without", "pucks", "reward"]].head(4).round(2)
 
 # %% [markdown]
 # `pucks` is the contribution, `reward` what the robot would have been rewarded in the game. Means over the
 # seeds with their 95 % intervals, robot −1 being the mean robot of the two:
 
 # %%
-means(question)[["robot", "seeds", "pucks", "pucks_low", "pucks_high", "reward", "reward_low", "reward_high"]]
+means(question)[["robot", "pucks", "pucks_low", "pucks_high", "reward", "reward_low", "reward_high"]].round(2)
 
 # %% [markdown]
 # Six seeds leave a wide interval: a single difference is mostly chance, for the two games part soon.
