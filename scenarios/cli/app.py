@@ -26,6 +26,7 @@ from scenarios.runs import package_version
 INTERRUPTED: Final = 130
 
 app = typer.Typer(
+    add_completion=False,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     help="Competing swarms of foraging robots: play the scenarios of the catalogue and see who wins.",

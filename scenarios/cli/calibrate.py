@@ -31,10 +31,7 @@ def calibrate(
     ),
     fresh: Annotated[bool, typer.Option("--fresh", help="Forget what DIR holds.")] = False,
 ) -> None:
-    """Fit the free parameters to Table 6.1.
-
-    Called again after an interruption, it goes on.
-    """
+    """Fit the free parameters to Table 6.1; called again after an interruption, go on."""
     from analysis.published import table_6_1
     from scenarios import calibration
 

@@ -8,17 +8,13 @@ import typer
 from model.parameters import parse_parameters
 from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.choice import chosen
-from scenarios.cli.options import ids_from
 from scenarios.cli.progress import clock
 from scenarios.cost import cpu_seconds
 from scenarios.description import Condition, Scenario, toml_of
 
 
 def list_scenarios() -> None:
-    """List the scenarios and tables, with their runs and CPU time.
-
-    A table is made of the scenarios' results. The time is an estimate, for one core.
-    """
+    """List the scenarios of the catalogue, and the tables made of some, with what they take on one core."""
     rows = [("id", "curves", "runs", "CPU time", "title")]
     for name, scenario in CATALOGUE.items():
         rows.append((name, *_size([scenario]), scenario.title))
@@ -49,17 +45,9 @@ def _size(scenarios: Iterable[Scenario]) -> tuple[str, str, str]:
 
 
 def show(
-    wanted: Annotated[
-        str,
-        typer.Argument(
-            metavar="ID", help="A scenario or table of the list, or my.toml.", autocompletion=ids_from
-        ),
-    ],
+    wanted: Annotated[str, typer.Argument(metavar="ID", help="A scenario or table of the list, or my.toml.")],
 ) -> None:
-    """Print a scenario as TOML, ready to edit.
-
-    `kswarms run my.toml` plays the edited file. Of a table, the scenarios that it is made of are printed.
-    """
+    """Print a scenario as TOML, or those that a table is made of; edited, `kswarms run my.toml` plays it."""
     scenarios = chosen([wanted])
     typer.echo(
         toml_of(scenarios) if len(scenarios) > 1 or wanted in TABLES else scenarios[0].to_toml(), nl=False

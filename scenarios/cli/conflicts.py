@@ -21,11 +21,7 @@ def conflicts(
     ] = None,
     end: Annotated[float | None, typer.Option("--to", help="Last instant (s).")] = None,
 ) -> None:
-    """Play a game and tell its conflicts, one by one.
-
-    Who met whom and where; what the robot knew, as Q and, in brackets, N of each action; what it chose; the
-    seconds T(a) and T(p); n′, how many sensors were active, and whom they saw; the reward R and Q after it.
-    """
+    """Play a game again and tell its conflicts: who, where, what was known, chosen and earned."""
     found = one_run(what, run, condition, n, seed)
     if robot is not None and not 0 <= robot < found.n:
         raise InputError("robot", robot, f"must be in 0 to {found.n - 1}")

@@ -10,7 +10,7 @@ import typer
 
 from agents.errors import InputError
 from scenarios.choice import chosen
-from scenarios.cli.options import Jobs, ids_from, processes
+from scenarios.cli.options import Jobs, processes
 from scenarios.runner import Outcome, play_all
 from scenarios.runs import Run
 
@@ -19,9 +19,7 @@ _ANY_WIDTH: Final = 1000
 
 
 def contribution(
-    wanted: Annotated[
-        str, typer.Argument(metavar="ID", help="A scenario of the list, or my.toml.", autocompletion=ids_from)
-    ],
+    wanted: Annotated[str, typer.Argument(metavar="ID", help="A scenario of the list.")],
     condition: Annotated[
         str | None, typer.Option(metavar="NAME", help="Which curve of it, if it has several.")
     ] = None,
@@ -39,10 +37,7 @@ def contribution(
     jobs: Jobs = None,
     out: Annotated[Path, typer.Option(metavar="DIR", help="Where the results go.")] = Path("results"),
 ) -> None:
-    """Measure what robots contributed to their swarms.
-
-    The same games are played without each robot, and compared with the rewards that it computed itself.
-    """
+    """Measure what robots contributed: play the same games without each, and compare with its rewards."""
     scenarios = chosen([wanted])
     if len(scenarios) > 1:
         raise InputError("id", wanted, f"must be one scenario: {', '.join(each.id for each in scenarios)}")

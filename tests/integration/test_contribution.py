@@ -42,6 +42,11 @@ def test_another_condition_is_kept_beside_the_first() -> None:
     ]
 
 
+def test_help_has_an_example(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["contribution", "--help"]) == 0
+    assert "Example: kswarms contribution fig-6.4b" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
