@@ -22,15 +22,16 @@ Act = Callable[[Callable[[], None]], None]
 
 MOST_ROBOTS: Final = 100
 _SLIDERS: Final = {
-    "friction": ("Friction μ", 0.0, 1.0, 0.02),
-    "conflict_distance": ("Conflict distance (m)", 0.02, 0.4, 0.01),
-    "flight_duration": ("Flight (s)", 0.1, 5.0, 0.1),
-    "fight_duration": ("Fight (s)", 0.1, 5.0, 0.1),
-    "base_range": ("Base seen from (m)", 0.1, 2.0, 0.02),
-    "leg_mean": ("Mean wander leg (s)", 0.5, 20.0, 0.5),
-    "push_share": ("Push share", 0.0, 1.0, 0.05),
+    "friction": ("Friction μ", (0.0, 1.0, 0.02)),
+    "conflict_distance": ("Conflict distance (m)", (0.02, 0.4, 0.01)),
+    "flight_duration": ("Flight (s)", (0.1, 5.0, 0.1)),
+    "fight_duration": ("Fight (s)", (0.1, 5.0, 0.1)),
+    "base_range": ("Base seen from (m)", (0.1, 2.0, 0.02)),
+    "leg_mean": ("Mean wander leg (s)", (0.5, 20.0, 0.5)),
+    "push_share": ("Push share", (0.0, 1.0, 0.05)),
 }
-"""Parameters of the world that have a slider: label, least, greatest, step."""
+"""Parameters of the world that have a slider: label; least, greatest, step."""
+_DRIVE: Final = (0.05, 1.0, 0.05)
 _KNOWN_POLICIES: Final = [name for name in POLICIES if name != "learned"] + ["mixed"]
 
 
@@ -91,15 +92,11 @@ def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:
 
 
 def _slider(
-    label: str,
-    value: float,
-    least: float,
-    greatest: float,
-    step: float,
-    tell: Callable[[float], None],
+    label: str, value: float, scale: tuple[float, float, float], tell: Callable[[float], None]
 ) -> None:
     """Show a slider; a value between its steps stays as it is until it is moved."""
     # Vuetify reports the nearest value that it can show as if somebody had chosen it.
+    least, greatest, step = scale
     nearest = min(max(least + round((value - least) / step) * step, least), greatest)
     solara.SliderFloat(
         label,
@@ -144,11 +141,13 @@ def _swarm(session: Session, k: int, act: Act) -> None:
             class_="kswarms-policy",
         )
         solara.InputInt("Share of the robots", swarm.share, on_value=lambda share: change(share=share))
-        for name, label in (("drive", "Drive in P"), ("drive_action", "Drive in A")):
-            drive = getattr(swarm, name)
-            _slider(
-                f"{label} {drive:g}", drive, 0.05, 1.0, 0.05, lambda value, name=name: change(**{name: value})
-            )
+        _slider(f"Drive in P {swarm.drive:g}", swarm.drive, _DRIVE, lambda drive: change(drive=drive))
+        _slider(
+            f"Drive in A {swarm.drive_action:g}",
+            swarm.drive_action,
+            _DRIVE,
+            lambda drive: change(drive_action=drive),
+        )
 
 
 def _learning(session: Session, act: Act) -> None:
@@ -169,7 +168,7 @@ def _learning(session: Session, act: Act) -> None:
         )
         if learning.delta is not None:
             label = f"Δ = {learning.delta:g}"
-            _slider(label, learning.delta, 0.0, 0.5, 0.005, lambda delta: change("reward", delta=delta))
+            _slider(label, learning.delta, (0.0, 0.5, 0.005), lambda delta: change("reward", delta=delta))
         solara.Select(
             "Selection rule",
             value=learning.rule,
@@ -178,7 +177,7 @@ def _learning(session: Session, act: Act) -> None:
         )
         if learning.gamma is not None:
             label = f"γ = {learning.gamma:g}"
-            _slider(label, learning.gamma, 0.0, 1.0, 0.005, lambda gamma: change("rule", gamma=gamma))
+            _slider(label, learning.gamma, (0.0, 1.0, 0.005), lambda gamma: change("rule", gamma=gamma))
         solara.InputFloat(
             "Time to learn (s)",
             form.learning,
@@ -194,13 +193,13 @@ def _world(session: Session, change: Callable[..., None], act: Act) -> None:
     except InputError:
         parameters = None  # the message above the arena says what is wrong with them
     if parameters is not None:
-        for name, (label, *scale) in _SLIDERS.items():
-            _slider(
-                f"{label} {getattr(parameters, name):.4g}",
-                getattr(parameters, name),
-                *scale,
-                lambda value, name=name: act(lambda: session.change_parameter(name, value)),
-            )
+        for name, (label, scale) in _SLIDERS.items():
+            value = getattr(parameters, name)
+
+            def tell(value: float, name: str = name) -> None:
+                act(lambda: session.change_parameter(name, value))
+
+            _slider(f"{label} {value:.4g}", value, scale, tell)
     solara.InputText("Parameters", form.parameters, on_value=lambda text: change(parameters=text))
     solara.Select(
         "Layout", value=form.layout, values=list(LAYOUTS), on_value=lambda name: change(layout=name)
