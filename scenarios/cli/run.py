@@ -19,6 +19,12 @@ from scenarios.runner import RECORDS
 # Of a printed table: as wide as it is, for rich would break the cells in a pipe's 80 columns.
 _ANY_WIDTH: Final = 1000
 
+_NEXT: Final = {
+    "report": "all results in one HTML file",
+    "status": "what failed, and how to see it fail again",
+}
+"""What the commands are for that a run names in the end."""
+
 
 def run(
     context: typer.Context,
@@ -90,7 +96,8 @@ def run(
         for table_id in dict.fromkeys(ids):
             if table_id in TABLES and tables:
                 _print_table(table_id, out)
-        typer.echo(f"next:   {_next_command(scenarios, out, failed)}")
+        then = "status" if failed else "report"
+        typer.echo(f"next:   kswarms {then} {shlex.quote(str(out))}  ({_NEXT[then]})")
     return 1 if failed else 0
 
 
@@ -152,13 +159,3 @@ def _print_table(table_id: str, out: Path) -> None:
         table.add_row(*cells)
     console = Console(width=_ANY_WIDTH, highlight=False)
     console.print(f"\n{table_id}: {title}", table, text.caption, sep="\n")
-
-
-def _next_command(played: Sequence[Scenario], out: Path, failed: int) -> str:
-    directory = shlex.quote(str(out))
-    if failed:
-        return f"kswarms status {directory}  (what failed, and how to see it fail again)"
-    rest = [scenario_id for scenario_id in CATALOGUE if scenario_id not in {each.id for each in played}]
-    if not rest:
-        return f"kswarms show {played[0].id}  (what was played)"
-    return f"kswarms run {rest[0]} --out {directory}  (`kswarms list` names all)"

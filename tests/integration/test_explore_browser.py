@@ -144,6 +144,8 @@ def browse(address: str) -> Iterator[Callable[..., Browser]]:
 def test_the_page_plays_changes_and_shows_a_learner(browse: Callable[..., Browser], address: str) -> None:
     browser = browse()
     assert browser.time() == "learning, 3000.0 s to the game"
+    shown = "return [...document.querySelectorAll('.kswarms-policy input')].map((field) => field.value)"
+    assert set(browser.driver.execute_script(shown)) == {"attack", "inter-learner"}  # no slider changed them
 
     browser.click("button", "play")
     browser.wait(lambda: browser.time() < "learning, 2990" and browser.time().startswith("learning, 29"))
