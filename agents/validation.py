@@ -1,10 +1,12 @@
 """Base class of every description: immutable data, checked once, at the edge."""
 
-from typing import Any, Self
+from typing import Any, Final, Self
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
 from agents.errors import InputError
+
+_NUMBERS: Final = (int, float, int | None, float | None)
 
 
 class Checked(BaseModel):
@@ -23,6 +25,16 @@ class Checked(BaseModel):
             super().__init__(**values)
         except ValidationError as error:
             raise InputError.from_validation(error, tuple(type(self).model_fields)) from None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _no_truth_for_numbers(cls, values: Any) -> Any:
+        # pydantic takes true for 1, so `seeds = true` would be played as one game.
+        for name, value in values.items() if isinstance(values, dict) else ():
+            field = cls.model_fields.get(name)
+            if isinstance(value, bool) and field is not None and field.annotation in _NUMBERS:
+                raise InputError(name, value, "must be a number")
+        return values
 
     def replace(self, **changes: Any) -> Self:
         """Return a copy with some fields changed, checked like a new one."""

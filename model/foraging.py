@@ -21,6 +21,7 @@ from agents.errors import InputError
 from agents.fleet import Fleet
 from agents.habits import Conflict, Habits
 from agents.krembot import Krembot
+from agents.outside import is_reference
 from agents.policies import Setting, deal, make_policy
 from agents.streams import Streams
 from model import recording
@@ -142,7 +143,9 @@ class GameModel(mesa.Model):
             self._stop()
             return
         now = int(self.env.now)
-        self.env.run(until=now - now % self._sample_every + self._sample_every)
+        until = now - now % self._sample_every + self._sample_every
+        self.env.run(until=until)
+        self._require(bool(self.ended) or self.env.now == until)
         self._collect()
 
     def play(self) -> None:
@@ -153,7 +156,12 @@ class GameModel(mesa.Model):
             return
         if not self.ended:
             self.env.run()
+            self._require(bool(self.ended))
         self._stop()
+
+    def _require(self, in_order: bool) -> None:
+        if not in_order:  # a policy that raises SimPy's StopSimulation ends the run of the clock
+            raise RuntimeError(f"the clock was stopped at {self.time} s, before the end of the game")
 
     def _stop(self) -> None:
         """Say that the model stopped, and sample its end if the clock was run there by hand."""
@@ -211,6 +219,8 @@ class GameModel(mesa.Model):
                 robot = Krembot(
                     *(self, index, k, policy, name, streams),
                     *(stride_program, stride_action, len(game.swarms)),
+                    # The package's own policies choose what they were given.
+                    actions=game.action_set if is_reference(name) else None,
                 )
                 self.members[k].append(robot)
                 index += 1

@@ -10,7 +10,8 @@ import typer
 
 from agents.errors import InputError
 from scenarios.choice import chosen
-from scenarios.cli.options import Jobs, processes
+from scenarios.cli.options import Jobs, check_seed, processes
+from scenarios.description import MOST_SEEDS
 from scenarios.runner import Outcome, play_all
 from scenarios.runs import Run
 
@@ -47,9 +48,9 @@ def contribution(
         raise InputError("condition", condition, f"must be one of {', '.join(map(repr, names))}")
     name = names[0] if condition is None else condition
     game = scenario.game(name, n)
-    for option, value, least in (("seeds", seeds, 1), ("first_seed", first_seed, 0)):
-        if value < least:
-            raise InputError(option, value, f"must be at least {least}")
+    if not 1 <= seeds <= MOST_SEEDS:
+        raise InputError("seeds", seeds, f"must be in 1 to {MOST_SEEDS}")
+    check_seed("first_seed", first_seed)
     workers = processes(jobs)
 
     from analysis.contribution import time_sud

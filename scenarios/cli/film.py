@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
     from analysis.arena import ArenaPainter
     from scenarios.explore.player import Picture, Player
+
+_MOST_PICTURES: Final = 100_000
+"""Of a film: over an hour at the usual 20 a second."""
 
 
 def film(
@@ -64,6 +67,8 @@ def film(
     if sheet is None:
         check_film(out)
         step = speed / fps
+        fits = (end - begin) / step < _MOST_PICTURES
+        _check("speed", speed, fits, f"must be so high that there are at most {_MOST_PICTURES:,} pictures")
         instants = [begin + k * step for k in range(int((end - begin) / step + 1e-9) + 1)]
     else:
         _check("out", str(out), out.suffix == ".png", "must end with .png for a contact sheet")

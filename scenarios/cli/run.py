@@ -11,7 +11,7 @@ import typer
 from agents.errors import InputError
 from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.choice import chosen, integers, planned, words
-from scenarios.cli.options import Jobs, processes
+from scenarios.cli.options import Jobs, check_seed, processes
 from scenarios.cli.progress import KINDS, check_kind, told
 from scenarios.description import Scenario
 from scenarios.runner import RECORDS
@@ -64,8 +64,7 @@ def run(
     scenarios, left_out = planned(
         chosen(ids or CATALOGUE), integers("densities", densities), seeds, suitable_only=everything
     )
-    if first_seed < 0:
-        raise InputError("first_seed", first_seed, "must be at least 0")
+    check_seed("first_seed", first_seed)
     workers = processes(jobs)
     records = words(record)
     for name in records:
