@@ -78,7 +78,7 @@ class GameModel(mesa.Model):
     """
 
     def __init__(self, game: Game, seed: int = 0, record: str = "", sample_period: float = 10.0) -> None:
-        if not isinstance(seed, int | np.integer) or seed < 0:
+        if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
             raise InputError("seed", seed, "must be a whole number ≥ 0")
         if not isinstance(sample_period, float | int | np.number) or not 0 < sample_period < math.inf:
             raise InputError("sample_period", sample_period, "must be a number of seconds > 0")
@@ -168,6 +168,8 @@ class GameModel(mesa.Model):
         if not self._sampled_end:
             self._collect()
         self.running = False
+        # Mesa counts the agents of every model in a table of the class, and so would keep the model alive.
+        mesa.Agent._ids.pop(self, None)
 
     def times(self, swarm: int) -> tuple[list[int], int]:
         """Return a swarm's T(a), by the opponent's swarm, and T(p), up to now (robot-periods)."""

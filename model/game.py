@@ -139,7 +139,9 @@ class Game(Checked):
             )
         periods = (self.learning + self.duration) / self.parameters.period
         if periods > MOST_PERIODS:
-            raise InputError("duration", self.duration, f"must be at most {MOST_PERIODS} periods, learning included")
+            raise InputError(
+                "duration", self.duration, f"must be at most {MOST_PERIODS} periods, learning included"
+            )
         reach = self.body_preset.radius + self.body_preset.sensing_scale * self.parameters.wall_distance
         if reach > self.side / 2:
             # Else a robot could have walls ahead in every direction, and never find where to turn.

@@ -16,7 +16,6 @@ from model.game import Game
 from scenarios.cost import cpu_seconds
 from scenarios.description import Condition, Scenario
 
-
 LAST_SEED: Final = 2**53
 """Seeds are not greater, so that every table and file has them whole."""
 

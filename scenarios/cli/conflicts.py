@@ -36,8 +36,7 @@ def conflicts(
     rows = [
         told(account, found.game.learning)
         for account in conflicts_of(found)
-        if (robot is None or account.robot == robot)
-        and first <= account.start - found.game.learning <= last
+        if (robot is None or account.robot == robot) and first <= account.start - found.game.learning <= last
     ]
     widths = [max(map(len, column)) for column in zip(TOLD, *rows, strict=True)]
     for row in (TOLD, *rows):

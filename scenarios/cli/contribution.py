@@ -10,7 +10,7 @@ import typer
 
 from agents.errors import InputError
 from scenarios.choice import chosen
-from scenarios.cli.options import Jobs, check_seed, processes
+from scenarios.cli.options import Jobs, check_seed, directory, processes
 from scenarios.description import MOST_SEEDS
 from scenarios.runner import Outcome, play_all
 from scenarios.runs import Run
@@ -36,7 +36,9 @@ def contribution(
         typer.Option(help="Whether they are absent from the learning too, or from the measured game alone."),
     ] = "learning",
     jobs: Jobs = None,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Where the results go.")] = Path("results"),
+    out: Annotated[Path, typer.Option(parser=directory, metavar="DIR", help="Where the results go.")] = Path(
+        "results"
+    ),
 ) -> None:
     """Measure what robots contributed: play the same games without each, and compare with its rewards."""
     scenarios = chosen([wanted])

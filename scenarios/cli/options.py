@@ -36,6 +36,19 @@ def processes(jobs: int | None) -> int:
     return jobs
 
 
+def directory(text: str) -> Path:
+    """Read the path of a directory.
+
+    Raises
+    ------
+    typer.BadParameter
+        If it is empty, as of a variable that a shell does not know; it would mean the current directory.
+    """
+    if not text:
+        raise typer.BadParameter("'': must be the path of a directory")
+    return Path(text)
+
+
 Watched = Annotated[
     str | None, typer.Argument(metavar="[ID|DIR]", help="A scenario; with --run, a directory of results.")
 ]
