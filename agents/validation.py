@@ -1,12 +1,16 @@
 """Base class of every description: immutable data, checked once, at the edge."""
 
-from typing import Any, Final, Self
+from typing import Any, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
 from agents.errors import InputError
 
-_NUMBERS: Final = (int, float, int | None, float | None)
+
+def _is_number(annotation: Any) -> bool:
+    """Tell whether a field takes numbers, maybe among other things, but no truth values."""
+    kinds = (annotation, *get_args(annotation))
+    return (int in kinds or float in kinds) and bool not in kinds
 
 
 class Checked(BaseModel):
@@ -32,7 +36,7 @@ class Checked(BaseModel):
         # pydantic takes true for 1, so `seeds = true` would be played as one game.
         for name, value in values.items() if isinstance(values, dict) else ():
             field = cls.model_fields.get(name)
-            if isinstance(value, bool) and field is not None and field.annotation in _NUMBERS:
+            if isinstance(value, bool) and field is not None and _is_number(field.annotation):
                 raise InputError(name, value, "must be a number")
         return values
 

@@ -31,7 +31,7 @@ def connected(address: str) -> Iterator[tuple[Executor, int]]:
     """
     try:
         from distributed import Client
-        from distributed.comm import get_address_host_port
+        from distributed.comm.addressing import get_address_host_port
     except ImportError as error:
         raise InputError("scheduler", address, "needs Dask: pip install 'kswarms[cluster]'") from error
     try:

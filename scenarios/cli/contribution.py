@@ -51,7 +51,7 @@ def contribution(
     name = names[0] if condition is None else condition
     game = scenario.game(name, n)
     if not 1 <= seeds <= MOST_SEEDS:
-        raise InputError("seeds", seeds, f"must be in 1 to {MOST_SEEDS}")
+        raise InputError("seeds", seeds, f"must be at least 1, at most {MOST_SEEDS}")
     check_seed("first_seed", first_seed)
     workers = processes(jobs)
 

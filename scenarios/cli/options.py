@@ -32,7 +32,7 @@ def processes(jobs: int | None) -> int:
     if jobs is None:
         return os.cpu_count() or 1
     if not 1 <= jobs <= MOST_JOBS:
-        raise InputError("jobs", jobs, f"must be in 1 to {MOST_JOBS}")
+        raise InputError("jobs", jobs, f"must be at least 1, at most {MOST_JOBS}")
     return jobs
 
 
@@ -90,7 +90,7 @@ def check_seed(field: str, seed: int) -> None:
         If it is out of range.
     """
     if not 0 <= seed <= LAST_SEED:
-        raise InputError(field, seed, f"must be in 0 to {LAST_SEED}")
+        raise InputError(field, seed, f"must be at least 0, at most {LAST_SEED}")
 
 
 def one_run(what: str | None, run: str, condition: str | None, n: int | None, seed: int | None) -> Run:
