@@ -60,7 +60,7 @@ class UCB(Rule):
         γ, how much is explored.
     """
 
-    gamma: float = Field(0.155, ge=0)
+    gamma: float = Field(0.1211, ge=0)
 
     def bounds(self, bandit: Bandit) -> list[float]:
         """Return Q(a) + sqrt(γ ln N / N(a)) of each arm; all must have been tried."""
