@@ -49,12 +49,18 @@ def _in_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
             "Invalid value for '--out': '': must be the path of a directory",
         ),
         ("calibrate --out=", "Invalid value for '--out': '': must be the path of a directory"),
-        ("contribution fig-6.1a --n 6 --seeds 99999999", "seeds=99999999: must be at least 1, at most 1000000"),
+        (
+            "contribution fig-6.1a --n 6 --seeds 99999999",
+            "seeds=99999999: must be at least 1, at most 1000000",
+        ),
         ("contribution fig-6.1a --n 6 --seeds 0", "seeds=0: must be at least 1, at most 1000000"),
         ("contribution fig-6.1a --n 6 --first-seed -1", f"first_seed=-1: must be at least 0, at most {MOST}"),
         ("calibrate --seeds 99999999", "seeds=99999999: must be less than or equal to 1000"),
         ("calibrate --generations 99999999", "generations=99999999: must be less than or equal to 10000"),
-        ("film fig-6.1a --n 6 --seed 9007199254740993", f"seed=9007199254740993: must be at least 0, at most {MOST}"),
+        (
+            "film fig-6.1a --n 6 --seed 9007199254740993",
+            f"seed=9007199254740993: must be at least 0, at most {MOST}",
+        ),
         (
             "film fig-6.1a --n 6 --out a.gif --speed 1e-300",
             "speed=1e-300: must be so high that there are at most",

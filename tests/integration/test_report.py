@@ -152,7 +152,10 @@ def test_scenarios_of_ones_own_have_a_chapter_of_their_own(tmp_path: Path) -> No
         ),
         ("good --out empty", "out='empty': must be a place that can be written"),
         ("good --findings none.toml", "findings='none.toml': must be a readable TOML file"),
-        ("good --findings taken.toml", "findings.id='6.1a-alike': must not be that of a finding of the thesis"),
+        (
+            "good --findings taken.toml",
+            "findings.id='6.1a-alike': must not be that of a finding of the thesis",
+        ),
         ("good --files good/runs.parquet", "files='good/runs.parquet': must be a folder"),
     ],
 )
