@@ -59,6 +59,7 @@ def film(
     _check("sheet", sheet, sheet is None or 1 <= sheet <= 100, "must be in 1 to 100")
     scenario, curve = found.labels[0]
     name = "-".join(part for part in (scenario, curve, f"n{found.n}", f"seed{found.seed}") if part)
+    name = name.replace("/", "-")  # a curve may be called as its user likes
     out = out or Path(f"{name}{'.mp4' if sheet is None else '.png'}")
 
     from analysis.film import check_film, write_film, write_sheet

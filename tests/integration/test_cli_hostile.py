@@ -91,6 +91,12 @@ def test_whatever_a_title_says_it_is_drawn_and_reported(
     assert [path.name for path in Path.cwd().iterdir() if path.name not in ("mine.toml", "results")] == []
 
 
+def test_a_film_is_called_by_its_curve_and_stays_in_its_directory() -> None:
+    Path("mine.toml").write_text(SCENARIO.replace("TITLE", "../../a/b"))
+    assert invoke(["film", "mine.toml", "--sheet", "1", "--to", "1"]) == 0
+    assert {path.name for path in Path.cwd().iterdir()} == {"mine.toml", "mine-..-..-a-b-n6-seed0.png"}
+
+
 @pytest.mark.parametrize(
     "statement",
     [
