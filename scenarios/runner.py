@@ -101,7 +101,7 @@ def play(run: Run, record: str = "") -> Outcome:
         model = GameModel(run.game, seed=run.seed, record=record)
         model.play()
         return Outcome(model.results(), policy_rows(model), model.tables())
-    except Exception as error:
+    except (Exception, SystemExit) as error:  # which code of a user's own may raise
         message = f"{name_of(run)} failed: {_line(error)}"
         raise RunError(message, traceback.format_exc()) from error
     finally:

@@ -11,7 +11,7 @@ import typer
 from agents.errors import InputError
 from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.choice import chosen, integers, planned, words
-from scenarios.cli.options import Jobs, processes
+from scenarios.cli.options import Jobs, check_seed, directory, processes
 from scenarios.cli.progress import KINDS, check_kind, told
 from scenarios.description import Scenario
 from scenarios.runner import RECORDS
@@ -49,7 +49,8 @@ def run(
         str | None, typer.Option(metavar="ADDRESS", help="Play on the Dask cluster of this scheduler.")
     ] = None,
     out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Where the results go, and are gone on from.")
+        Path,
+        typer.Option(parser=directory, metavar="DIR", help="Where the results go, and are gone on from."),
     ] = Path("results"),
     record: Annotated[
         str, typer.Option(metavar="NAME,...", help=f"More tables to write: {', '.join(RECORDS)}.")
@@ -70,8 +71,7 @@ def run(
     scenarios, left_out = planned(
         chosen(ids or CATALOGUE), integers("densities", densities), seeds, suitable_only=everything
     )
-    if first_seed < 0:
-        raise InputError("first_seed", first_seed, "must be at least 0")
+    check_seed("first_seed", first_seed)
     workers = processes(jobs)
     records = words(record)
     for name in records:
