@@ -6,7 +6,7 @@ timeout that a conflict has overtaken finds another one in its place and does no
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final, Protocol, cast
 
 import simpy
@@ -15,6 +15,7 @@ from simpy.events import Timeout
 
 from agents.actions import TOWARDS, Action
 from agents.body import SENSORS
+from agents.errors import InputError
 from agents.fleet import ACTION, HOME, HOME_TURN, HOMING_ERROR, IDLE, LEG, LEG_OVER, TURN, Fleet
 from agents.habits import Conflict, Habits
 from agents.policies import LearningPolicy, Policy
@@ -62,6 +63,8 @@ class Krembot(ContinuousSpaceAgent):
         What it drives in a period in state P and in state A (m).
     swarms : int
         Number of swarms in the game.
+    actions : sequence of Action, optional
+        What the policy may choose, if it is not trusted.
 
     Attributes
     ----------
@@ -88,6 +91,7 @@ class Krembot(ContinuousSpaceAgent):
         stride_program: float,
         stride_action: float,
         swarms: int,
+        actions: Sequence[Action] | None = None,
     ) -> None:
         super().__init__(model.space, cast(Any, model))
         self.number = self.index = number
@@ -102,6 +106,7 @@ class Krembot(ContinuousSpaceAgent):
         self._draws = streams.draws
         self._learn: Callable[[float, float, int], tuple[float, float]] | None
         self._learn = getattr(policy, "learn", None)
+        self._allowed = actions
         self._fleet = model.fleet
         self._phase = model.fleet.phase
         self._stride = model.fleet.stride
@@ -228,6 +233,12 @@ class Krembot(ContinuousSpaceAgent):
         self.close(now)
         index = self.index
         action = self._action = self.policy.choose(swarm)
+        if self._allowed is not None and action not in self._allowed:
+            raise InputError(
+                "policy",
+                self.policy_name,
+                f"choose({swarm}) must return an action of the game, not {action!r}",
+            )
         self._fleet.opponent[index] = other
         self._opponent_swarm = swarm
         self._is_open = True

@@ -154,7 +154,7 @@ def load(path: Path) -> dict[str, Any]:
     """
     try:
         return _load(path, path.stat().st_mtime_ns)
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError, ArithmeticError, KeyError, TypeError, RecursionError) as error:
         raise InputError("file", str(path), f"must be a file of learned policies ({error})") from None
 
 
@@ -164,4 +164,7 @@ def _load(path: Path, _changed: int) -> dict[str, Any]:
     if saved["format"] != _FORMAT or not saved["robots"]:
         raise ValueError(f"not of the form {_FORMAT}")
     robots = [[_SavedArm(**arm).model_dump() for arm in arms] for arms in saved["robots"]]
+    for arm in (arm for arms in robots for arm in arms):
+        if (arm["q"] is None) != (arm["count"] <= 0):
+            raise ValueError(f"q={arm['q']!r} where count={arm['count']:g}")
     return {"swarm": int(saved["swarm"]), "robots": robots}

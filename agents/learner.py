@@ -1,5 +1,6 @@
 """The learner: a bandit for each swarm-ID that a robot can meet (section 1.5, Algorithm 1)."""
 
+from math import isfinite
 from typing import TYPE_CHECKING, Any, Literal
 
 from agents.actions import AWAY, Action
@@ -75,6 +76,9 @@ class Learner:
         }
         if not self.bandits:
             raise InputError("about", about, "needs another swarm to learn about")
+        for opponent in sorted(self._reward.opponents()):
+            if opponent - 1 not in self.bandits:
+                raise InputError("reward", reward, f"names swarm {opponent}, which it learns nothing about")
         self.learning = True
         self._draws = setting.streams.draws
         self._opponent = -1
@@ -94,6 +98,8 @@ class Learner:
         if not self.learning:
             return self.learned(opponent)
         self._arm = self.rule.choose(bandit, self._draws(Purpose.EXPLORE))
+        if not 0 <= self._arm < len(self.actions):
+            raise InputError("rule", self._arm, f"must choose 0 to {len(self.actions) - 1}")
         bandit.choices += 1
         return self.actions[self._arm]
 
@@ -119,6 +125,8 @@ class Learner:
         reward = self._reward.of(
             t_a, t_p, n_active, self.actions[arm].direction, opponent != self.swarm, opponent + 1
         )
+        if not isfinite(reward):
+            raise InputError("reward", reward, f"must be finite, also for T(a)={t_a:g}, T(p)={t_p:g}")
         bandit.update(arm, reward, t_a + t_p, self._factor)
         return reward, bandit.value(arm)
 

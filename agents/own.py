@@ -84,6 +84,12 @@ def rehearse(text: str, policy: "Policy", setting: "Setting") -> None:
             check_arms(arms)
         except (InputError, KeyError, TypeError) as error:
             raise InputError("policy", name, f"snapshot() must be as that of a Learner ({error})") from None
+        names = [action.name for action in setting.actions]
+        for arm in arms:
+            if arm["action"] not in names or not 1 <= arm["opponent"] <= setting.swarms:
+                raise InputError(
+                    "policy", name, f"snapshot() must tell of the game's actions and swarms, not {arm}"
+                )
 
 
 def _tried(name: str, what: str, method: Callable[[], Any]) -> Any:

@@ -171,7 +171,8 @@ def make_rule(text: str, arms: int) -> Rule:
             if not isinstance(arm, Integral) or not 0 <= arm < arms:
                 raise InputError("rule", name, f"prefer(…) must return 0 to {arms - 1}, not {arm!r}")
             bandit.choices += 1
-            bandit.update(arm, 1.0, 2.0, factor)
+            with blaming("rule", name, "choose(…) changes the bandit, and its update"):
+                bandit.update(arm, 1.0, 2.0, factor)
     return rule
 
 

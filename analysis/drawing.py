@@ -13,6 +13,7 @@ from itertools import pairwise
 from textwrap import fill
 from typing import Final
 
+import matplotlib as mpl
 import pandas as pd
 import seaborn as sns
 from matplotlib.axes import Axes
@@ -176,6 +177,7 @@ def sheet(heading: str, width: float = 7.0, height: float = 4.9) -> Iterator[Fig
     with (
         sns.axes_style("whitegrid", rc={"grid.color": "0.9"}),
         sns.plotting_context("notebook", font_scale=0.9),
+        mpl.rc_context({"text.parse_math": False}),  # a user's title may have a dollar in it
     ):
         figure = Figure(figsize=(width, height), layout="constrained")
         figure.suptitle(fill(heading, width=int(10 * width), break_on_hyphens=False))

@@ -1,6 +1,7 @@
 """Figures as PNG and SVG: the same bytes for the same figure, in files written whole or not at all."""
 
 import os
+import warnings
 from io import BytesIO
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -54,7 +55,9 @@ def encoded(figure: Figure, kind: str) -> bytes:
         raise InputError("format", kind, f"must be one of {', '.join(FORMATS)}")
     content = BytesIO()
     # Without these an SVG has the date in it and identifiers at random.
-    with mpl.rc_context({"svg.hashsalt": "kswarms"}):
+    with mpl.rc_context({"svg.hashsalt": "kswarms"}), warnings.catch_warnings():
+        # A user's title may be in a script that the font lacks: a box in the picture says so.
+        warnings.filterwarnings("ignore", "Glyph .* missing from font")
         metadata = {"Date": None} if kind == "svg" else None
         figure.savefig(content, format=kind, dpi=DOTS_PER_INCH, metadata=metadata)
     return content.getvalue()

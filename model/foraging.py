@@ -21,6 +21,7 @@ from agents.errors import InputError
 from agents.fleet import Fleet
 from agents.habits import Conflict, Habits
 from agents.krembot import Krembot
+from agents.outside import is_reference
 from agents.policies import Setting, deal, make_policy
 from agents.streams import Streams
 from model import recording
@@ -77,7 +78,7 @@ class GameModel(mesa.Model):
     """
 
     def __init__(self, game: Game, seed: int = 0, record: str = "", sample_period: float = 10.0) -> None:
-        if not isinstance(seed, int | np.integer) or seed < 0:
+        if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
             raise InputError("seed", seed, "must be a whole number ≥ 0")
         if not isinstance(sample_period, float | int | np.number) or not 0 < sample_period < math.inf:
             raise InputError("sample_period", sample_period, "must be a number of seconds > 0")
@@ -142,7 +143,9 @@ class GameModel(mesa.Model):
             self._stop()
             return
         now = int(self.env.now)
-        self.env.run(until=now - now % self._sample_every + self._sample_every)
+        until = now - now % self._sample_every + self._sample_every
+        self.env.run(until=until)
+        self._require(bool(self.ended) or self.env.now == until)
         self._collect()
 
     def play(self) -> None:
@@ -153,13 +156,20 @@ class GameModel(mesa.Model):
             return
         if not self.ended:
             self.env.run()
+            self._require(bool(self.ended))
         self._stop()
+
+    def _require(self, in_order: bool) -> None:
+        if not in_order:  # a policy that raises SimPy's StopSimulation ends the run of the clock
+            raise RuntimeError(f"the clock was stopped at {self.time} s, before the end of the game")
 
     def _stop(self) -> None:
         """Say that the model stopped, and sample its end if the clock was run there by hand."""
         if not self._sampled_end:
             self._collect()
         self.running = False
+        # Mesa counts the agents of every model in a table of the class, and so would keep the model alive.
+        mesa.Agent._ids.pop(self, None)
 
     def times(self, swarm: int) -> tuple[list[int], int]:
         """Return a swarm's T(a), by the opponent's swarm, and T(p), up to now (robot-periods)."""
@@ -211,6 +221,8 @@ class GameModel(mesa.Model):
                 robot = Krembot(
                     *(self, index, k, policy, name, streams),
                     *(stride_program, stride_action, len(game.swarms)),
+                    # The package's own policies choose what they were given.
+                    actions=game.action_set if is_reference(name) else None,
                 )
                 self.members[k].append(robot)
                 index += 1

@@ -22,6 +22,10 @@ from agents.validation import Checked
 from model.arena import LAYOUTS, Arena, build_arena
 from model.parameters import PRESETS, Parameters
 
+MOST_PERIODS: Final = 2**53
+"""No game has more, so that they can be counted."""
+MOST_PUCKS: Final = 10**9
+"""More are no limit."""
 LONGEST_STEP: Final = 0.8
 """What a robot may cover in a period, as a part of its radius: two that meet must not pass each other."""
 
@@ -87,11 +91,11 @@ class Game(Checked):
     parameters: Parameters = PRESETS["fitted"]
     body: str = "krembot-sim"
     actions: tuple[Action, ...] = ()
-    side: float = Field(2.0, gt=0)
+    side: float = Field(2.0, gt=0, le=10_000)
     learning: float = Field(0.0, ge=0)
     duration: float = Field(600.0, gt=0)
-    puck_limit: int | None = Field(None, ge=1)
-    supply: int | None = Field(None, ge=1)
+    puck_limit: int | None = Field(None, ge=1, le=MOST_PUCKS)
+    supply: int | None = Field(None, ge=1, le=MOST_PUCKS)
     absent: tuple[int, ...] = ()
     absent_from: Literal["learning", "game"] = "learning"
 
@@ -113,6 +117,9 @@ class Game(Checked):
     def _check(self) -> Self:
         if self.layout not in LAYOUTS:
             raise InputError("layout", self.layout, f"must be one of {', '.join(LAYOUTS)}")
+        if self.layout == "nearer-station" and len(self.swarms) > 2:
+            # Its upper station is solved from the distances to two bases; a third swarm would have its own.
+            raise InputError("layout", self.layout, f"must have at most 2 swarms, not {len(self.swarms)}")
         if self.body not in BODIES:
             raise InputError("body", self.body, f"must be one of {', '.join(BODIES)}")
         names = [action.name for action in self.action_set]
@@ -129,6 +136,11 @@ class Game(Checked):
                 "period",
                 self.parameters.period,
                 f"must be so short that a robot covers at most {LONGEST_STEP} of its radius",
+            )
+        periods = (self.learning + self.duration) / self.parameters.period
+        if periods > MOST_PERIODS:
+            raise InputError(
+                "duration", self.duration, f"must be at most {MOST_PERIODS} periods, learning included"
             )
         reach = self.body_preset.radius + self.body_preset.sensing_scale * self.parameters.wall_distance
         if reach > self.side / 2:
@@ -157,8 +169,7 @@ class Game(Checked):
             raise InputError(
                 "n", n, f"robots of radius {body.radius} m do not fit in a square of {self.side} m"
             )
-        if self.layout != "random-stations":
-            self.arena(0)
+        self.arena(0)  # of random stations, one layout tells whether there is room for any
 
     @property
     def size(self) -> int:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from functools import partial
+from typing import Final
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from model.motion import advance
 from model.neighbours import room_for_pairs
 from model.percepts import EVENT
 from model.world import CONTACT, MAX_CONTACTS, PAIR, STATION, WORK, WORLD
+
+_MOST_CELLS: Final = 1024
+"""Rows of the grid of cells at most: that of a vast arena has larger cells, not more of them."""
 
 
 class Kernel:
@@ -47,7 +51,7 @@ class Kernel:
         self.supply: Integers = stations["supply"]
         world = make_world(game, arena)
         pair_reach = float(world["pair_reach"][0])
-        cells = max(1, int(2 * arena.half / pair_reach))
+        cells = max(1, min(_MOST_CELLS, int(2 * arena.half / pair_reach)))
         work: Records = np.zeros(n, dtype=WORK)
         work["origin_x"] = np.nan  # no neighbours listed yet
         arguments = (

@@ -9,6 +9,9 @@ from agents.actions import AWAY, TOWARDS, Action
 from agents.errors import InputError
 from agents.validation import Checked
 
+FARTHEST: Final = 10_000.0
+"""No sense reaches farther (m): as far as the side of the largest arena."""
+
 
 class Parameters(Checked):
     """What neither the thesis nor the public simulator fixes, with the defaults fitted to Table 6.1.
@@ -58,21 +61,21 @@ class Parameters(Checked):
     """
 
     period: float = Field(0.1, gt=0, le=1)
-    conflict_distance: float = Field(0.1718, gt=0)
+    conflict_distance: float = Field(0.1718, gt=0, le=FARTHEST)
     front_half_angle: float = Field(math.radians(62.5), gt=0, le=math.pi)
     flight_duration: float = Field(1.619, gt=0)
     fight_duration: float = Field(1.0, gt=0)
     turning_rate: float = Field(2.96, gt=0)
-    flight_range: float = Field(0.46, gt=0)
-    active_range: float = Field(0.2467, gt=0)
+    flight_range: float = Field(0.46, gt=0, le=FARTHEST)
+    active_range: float = Field(0.2467, gt=0, le=FARTHEST)
     leg_mean: float = Field(6.7, gt=0)
     wander_turn: float = Field(math.radians(86), gt=0, le=math.pi)
-    wall_distance: float = Field(0.06, gt=0)
+    wall_distance: float = Field(0.06, gt=0, le=FARTHEST)
     wall_half_angle: float = Field(0.0, ge=0, lt=math.pi / 2)
     wall_escape: Literal["clear", "away"] = "clear"
     station_radius: float = Field(0.16, gt=0)
     base_radius: float = Field(0.17, gt=0)
-    base_range: float = Field(0.82, gt=0)
+    base_range: float = Field(0.82, gt=0, le=FARTHEST)
     friction: float = Field(0.1596, ge=0)
     push_share: float = Field(0.0, ge=0, le=1)
     clearance: float = Field(0.01, ge=0)
@@ -132,4 +135,8 @@ def parse_parameters(text: str) -> Parameters:
     for name, sign, _ in pairs:
         if not sign:
             raise InputError("parameters", name, "after the preset, must be name=value")
-    return PRESETS[preset].replace(**{name.strip(): value.strip() for name, _, value in pairs})
+    values: dict[str, str] = {}
+    for name, _, value in pairs:
+        if values.setdefault(name.strip(), value.strip()) != value.strip():
+            raise InputError(f"parameters.{name.strip()}", value.strip(), "must be given once")
+    return PRESETS[preset].replace(**values)

@@ -58,6 +58,12 @@ class ForagingModel(GameModel):
         record: str = "model",
         sample_period: float = 10.0,
     ) -> None:
+        for field, text in (
+            *(("policies", policies), ("shares", shares), ("drives", drives)),
+            *(("parameters", parameters), ("record", record)),
+        ):
+            if not isinstance(text, str):
+                raise InputError(field, text, "must be a text")
         game = Game(
             swarms=_swarms(n, policies, shares, drives),
             layout=layout,

@@ -191,10 +191,12 @@ def save_policies(model: "GameModel", swarm: int, path: Path) -> None:
     Raises
     ------
     InputError
-        If it is not a swarm of learners.
+        If it is no swarm of the game, or not one of learners.
     OSError
         If the file cannot be written; then nothing is.
     """
+    if not 1 <= swarm <= len(model.members):
+        raise InputError("swarm", swarm, f"must be in 1 to {len(model.members)}")
     learned = [describe(robot.policy) for robot in model.members[swarm - 1]]
     if not all(learned):
         raise InputError("swarm", swarm, "must be a swarm of learners")

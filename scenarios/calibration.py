@@ -71,9 +71,9 @@ class Setup(Checked):
 
     free: tuple[str, ...] = tuple(START)
     densities: tuple[int, ...] = Field((6, 10, 16, 20, 26, 30, 36, 40, 46, 50), min_length=1)
-    seeds: int = Field(4, ge=1)
-    generations: int = Field(25, ge=1)
-    population: int = Field(0, ge=0)
+    seeds: int = Field(4, ge=1, le=1000)
+    generations: int = Field(25, ge=1, le=10_000)
+    population: int = Field(0, ge=0, le=10_000)
     validation_seeds: int = Field(20, ge=5, le=FIT_SEED - VALIDATION_SEED)
 
     @model_validator(mode="after")

@@ -31,9 +31,11 @@ def connected(address: str) -> Iterator[tuple[Executor, int]]:
     """
     try:
         from distributed import Client
+        from distributed.comm.addressing import get_address_host_port
     except ImportError as error:
         raise InputError("scheduler", address, "needs Dask: pip install 'kswarms[cluster]'") from error
     try:
+        get_address_host_port(address)  # a client of no address at all would hang when it is thrown away
         client = Client(address, timeout=_PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
         reason = " ".join(str(error).split())

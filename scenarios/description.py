@@ -22,6 +22,13 @@ DENSITIES: Final = (6, 10, 16, 20, 26, 30, 36, 40, 46, 50)
 SEEDS: Final = 20
 """Games for each density, unless a scenario says otherwise (section 3.1)."""
 
+MOST_SEEDS: Final = 1_000_000
+"""Games for a density at most."""
+LONGEST_NAME: Final = 100
+LONGEST_TITLE: Final = 200
+"""Letters of a name, which files are called by, and of a title."""
+_ONE_LINE: Final = r"^[^\x00-\x1f\x7f]*$"
+
 
 class SwarmRule(Checked):
     """One swarm of a condition, whatever the number of robots.
@@ -69,7 +76,7 @@ class Condition(Checked):
         terms, so that the proportions hold exactly.
     """
 
-    name: str = ""
+    name: str = Field(default="", max_length=LONGEST_NAME, pattern=_ONE_LINE)
     swarms: tuple[SwarmRule, ...] = Field(min_length=1)
     layout: str = "symmetric"
     body: str = "krembot-sim"
@@ -139,11 +146,11 @@ class Scenario(Checked):
         Games for each density.
     """
 
-    id: str = Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")
-    title: str = Field(min_length=1)
+    id: str = Field(pattern=r"^[a-z0-9][a-z0-9.-]*$", max_length=LONGEST_NAME)
+    title: str = Field(min_length=1, max_length=LONGEST_TITLE, pattern=_ONE_LINE)
     conditions: tuple[Condition, ...] = Field(min_length=1)
     densities: tuple[int, ...] = Field(default=DENSITIES, min_length=1)
-    seeds: int = Field(default=SEEDS, ge=1)
+    seeds: int = Field(default=SEEDS, ge=1, le=MOST_SEEDS)
 
     @model_validator(mode="after")
     def _playable(self) -> Self:

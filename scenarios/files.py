@@ -22,8 +22,8 @@ def read_scenarios(path: Path) -> list[Scenario]:
         If it cannot be read, or one of its scenarios could not be played.
     """
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError, RecursionError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise InputError("id", str(path), f"must be a file of TOML ({reason})") from error
     several = content.get("scenarios", content)

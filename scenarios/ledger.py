@@ -229,7 +229,7 @@ class Ledger:
             f"SELECT run, scenario, condition, n, points.seed, {name} FROM points JOIN runs USING (run)"
             f" WHERE status = 'done' AND {name} != '[]' ORDER BY scenario, condition, n, points.seed"
         ):
-            yield Point(*point), json.loads(rows)
+            yield Point(*point), self._parsed(rows)
 
     def records(self, name: str) -> Iterator[tuple[str, bytes]]:
         """Yield a recorded table, packed, of every run that is done and has it, in the order of digests."""
@@ -258,7 +258,7 @@ class Ledger:
                 "run", name, f"must be a run of {self.path.parent}: see the column run of its tables"
             )
         labels = tuple(self.query("SELECT scenario, condition FROM points WHERE run = ?", name))
-        run = Run(name, Game(**json.loads(row[0])), row[1], labels)
+        run = Run(name, Game(**self._parsed(row[0])), row[1], labels)
         if digest(run.game, run.seed) != name:
             raise InputError(
                 "run", name, "is of another version of kswarms, or what its game loads has changed"
@@ -270,7 +270,7 @@ class Ledger:
         row = next(
             self.query("SELECT swarms, policies FROM runs WHERE run = ? AND status = 'done'", name), None
         )
-        return (json.loads(row[0]), json.loads(row[1])) if row else None
+        return (self._parsed(row[0]), self._parsed(row[1])) if row else None
 
     # ----------------------------------------------------------------------------------------------- sessions
 
@@ -289,12 +289,12 @@ class Ledger:
         with self._transaction():
             self._db.execute(
                 "UPDATE sessions SET about = ? WHERE id = ?",
-                (json.dumps(json.loads(about) | changes), number),
+                (json.dumps(self._parsed(about) | changes), number),
             )
 
     def sessions(self) -> list[dict[str, Any]]:
         """Return what is known of every session, the first first."""
-        return [json.loads(about) for (about,) in self.query("SELECT about FROM sessions ORDER BY id")]
+        return [self._parsed(about) for (about,) in self.query("SELECT about FROM sessions ORDER BY id")]
 
     def scenarios(self) -> dict[str, str]:
         """Return the TOML of each scenario, as it was asked for last, by its id."""
@@ -308,7 +308,14 @@ class Ledger:
     def query(self, sql: str, *values: object) -> Iterator[Any]:
         """Yield the rows that an SQL query finds."""
         with _as_os_error(self.path):
-            yield from self._db.execute(sql, values)
+            for row in self._db.execute(sql, values):  # noqa: UP028  # `yield from` closes it, maybe too late
+                yield row
+
+    def _parsed(self, text: str) -> Any:
+        try:
+            return json.loads(text)
+        except ValueError as error:
+            raise OSError(f"{self.path}: is damaged ({error})") from error
 
 
 @contextmanager

@@ -123,7 +123,7 @@ def naming(played: str) -> Iterator[None]:
     """
     try:
         yield
-    except Exception as error:
+    except (Exception, SystemExit) as error:  # which code of a user's own may raise
         raise RunError(f"{played} failed: {_line(error)}", traceback.format_exc()) from error
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from typing import Final
 
 from agents.errors import InputError
 from agents.own import files
@@ -14,6 +15,9 @@ from agents.policies import parts
 from model.game import Game
 from scenarios.cost import cpu_seconds
 from scenarios.description import Condition, Scenario
+
+LAST_SEED: Final = 2**53
+"""Seeds are not greater, so that every table and file has them whole."""
 
 
 @dataclass(frozen=True)
@@ -133,7 +137,12 @@ def require_unchanged(run: Run) -> None:
     InputError
         If a file that it is made of was changed since it was named.
     """
-    if (loaded := _loaded(run.game)) and digest(run.game, run.seed) != run.digest:
+    loaded = _loaded(run.game)
+    try:
+        changed = bool(loaded) and digest(run.game, run.seed) != run.digest
+    except OSError:  # it is gone
+        changed = True
+    if changed:
         names = ", ".join(dict.fromkeys(map(str, loaded)))
         raise InputError("policy", names, "must not change while its games are played")
 

@@ -169,9 +169,12 @@ def export(ledger: Ledger, directory: Path) -> list[Path]:
     Raises
     ------
     OSError
-        If writing fails.
+        If writing fails, or the ledger is damaged.
     """
-    names = [name for name in SCHEMAS if _write(name, _rows(ledger, name), directory)]
+    try:
+        names = [name for name in SCHEMAS if _write(name, _rows(ledger, name), directory)]
+    except (pa.ArrowException, LookupError) as error:
+        raise OSError(f"{ledger.path}: is damaged ({error!r})") from error
     return [_path(directory, name) for name in names]
 
 

@@ -329,6 +329,6 @@ def parse(text: str, name: str) -> tuple[Finding, ...]:
     """
     try:
         content = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InputError("findings", name, f"must be TOML: {error}") from error
     return _File(**content).findings

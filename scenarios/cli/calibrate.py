@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from scenarios.choice import integers, words
-from scenarios.cli.options import Jobs, processes
+from scenarios.cli.options import Jobs, directory, processes
 from scenarios.cli.progress import tracked
 from scenarios.runner import play_all
 from scenarios.runs import Run
@@ -38,9 +38,9 @@ def calibrate(
         int, typer.Option(help="Games for each cell in the validation, at least 5.")
     ] = 20,
     jobs: Jobs = None,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="What is kept, and gone on from.")] = Path(
-        "calibration"
-    ),
+    out: Annotated[
+        Path, typer.Option(parser=directory, metavar="DIR", help="What is kept, and gone on from.")
+    ] = Path("calibration"),
     fresh: Annotated[bool, typer.Option("--fresh", help="Forget what DIR holds.")] = False,
 ) -> None:
     """Fit the free parameters to Table 6.1; called again after an interruption, go on."""

@@ -1,5 +1,6 @@
 """``conflicts``: a game told conflict by conflict."""
 
+import math
 from typing import Annotated
 
 import typer
@@ -25,14 +26,17 @@ def conflicts(
     found = one_run(what, run, condition, n, seed)
     if robot is not None and not 0 <= robot < found.n:
         raise InputError("robot", robot, f"must be in 0 to {found.n - 1}")
+    first, last = -math.inf if begin is None else begin, math.inf if end is None else end
+    if math.isnan(first):
+        raise InputError("from", begin, "must be a number of seconds")
+    if not first <= last:
+        raise InputError("to", end, f"must be a number of seconds, at least {first:g}")
     from scenarios.replay import TOLD, conflicts_of, told
 
     rows = [
         told(account, found.game.learning)
         for account in conflicts_of(found)
-        if (robot is None or account.robot == robot)
-        and (begin is None or account.start - found.game.learning >= begin)
-        and (end is None or account.start - found.game.learning <= end)
+        if (robot is None or account.robot == robot) and first <= account.start - found.game.learning <= last
     ]
     widths = [max(map(len, column)) for column in zip(TOLD, *rows, strict=True)]
     for row in (TOLD, *rows):

@@ -10,8 +10,9 @@ import typer
 
 from agents.errors import InputError
 from scenarios.choice import chosen
-from scenarios.cli.options import Jobs, processes, scenario_ids
+from scenarios.cli.options import Jobs, check_seed, directory, processes, scenario_ids
 from scenarios.cli.progress import tracked
+from scenarios.description import MOST_SEEDS
 from scenarios.runner import Outcome, play_all
 from scenarios.runs import Run
 
@@ -48,7 +49,9 @@ def contribution(
         typer.Option(help="Whether they are absent from the learning too, or from the measured game alone."),
     ] = "learning",
     jobs: Jobs = None,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Where the results go.")] = Path("results"),
+    out: Annotated[Path, typer.Option(parser=directory, metavar="DIR", help="Where the results go.")] = Path(
+        "results"
+    ),
 ) -> None:
     """Measure what robots contributed: play the same games without each, and compare with its rewards."""
     scenarios = chosen([wanted])
@@ -60,9 +63,9 @@ def contribution(
         raise InputError("condition", condition, f"must be one of {', '.join(map(repr, names))}")
     name = names[0] if condition is None else condition
     game = scenario.game(name, n)
-    for option, value, least in (("seeds", seeds, 1), ("first_seed", first_seed, 0)):
-        if value < least:
-            raise InputError(option, value, f"must be at least {least}")
+    if not 1 <= seeds <= MOST_SEEDS:
+        raise InputError("seeds", seeds, f"must be at least 1, at most {MOST_SEEDS}")
+    check_seed("first_seed", first_seed)
     workers = processes(jobs)
 
     from analysis.contribution import time_sud

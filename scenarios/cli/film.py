@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
     from analysis.arena import ArenaPainter
     from scenarios.explore.player import Picture, Player
+
+_MOST_PICTURES: Final = 100_000
+"""Of a film: over an hour at the usual 20 a second."""
 
 
 def film(
@@ -61,6 +64,7 @@ def film(
     _check("sheet", sheet, sheet is None or 1 <= sheet <= 100, "must be in 1 to 100")
     scenario, curve = found.labels[0]
     name = "-".join(part for part in (scenario, curve, f"n{found.n}", f"seed{found.seed}") if part)
+    name = name.replace("/", "-")  # a curve may be called as its user likes
     out = out or Path(f"{name}{'.mp4' if sheet is None else '.png'}")
 
     from analysis.film import check_film, write_film, write_sheet
@@ -69,6 +73,8 @@ def film(
     if sheet is None:
         check_film(out)
         step = speed / fps
+        fits = (end - begin) / step < _MOST_PICTURES
+        _check("speed", speed, fits, f"must be so high that there are at most {_MOST_PICTURES:,} pictures")
         instants = [begin + k * step for k in range(int((end - begin) / step + 1e-9) + 1)]
     else:
         _check("out", str(out), out.suffix == ".png", "must end with .png for a contact sheet")

@@ -9,12 +9,15 @@ import typer
 from agents.errors import InputError
 from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.choice import chosen
-from scenarios.runs import Run, digest
+from scenarios.runs import LAST_SEED, Run, digest
 
 FIRST_SCENARIO: Final = "fig-6.1c"
 """What is watched if nothing is asked for …"""
 USUAL_N: Final = 20
 """… and with how many robots, or nearly."""
+
+MOST_JOBS: Final = 1024
+"""Processes at most: of more, no machine has the memory."""
 
 Jobs = Annotated[
     int | None, typer.Option(help="Processes that play, at least 1. [default: one for each CPU]")
@@ -31,8 +34,8 @@ def processes(jobs: int | None) -> int:
     """
     if jobs is None:
         return os.cpu_count() or 1
-    if jobs < 1:
-        raise InputError("jobs", jobs, "must be at least 1")
+    if not 1 <= jobs <= MOST_JOBS:
+        raise InputError("jobs", jobs, f"must be at least 1, at most {MOST_JOBS}")
     return jobs
 
 
@@ -46,6 +49,19 @@ def ids(incomplete: str) -> list[tuple[str, str]]:
 def scenario_ids(incomplete: str) -> list[tuple[str, str]]:
     """Return `ids` without those of tables."""
     return [(name, title) for name, title in ids(incomplete) if name in CATALOGUE]
+
+
+def directory(text: str) -> Path:
+    """Read the path of a directory.
+
+    Raises
+    ------
+    typer.BadParameter
+        If it is empty, as of a variable that a shell does not know; it would mean the current directory.
+    """
+    if not text:
+        raise typer.BadParameter("'': must be the path of a directory")
+    return Path(text)
 
 
 Watched = Annotated[
@@ -94,6 +110,18 @@ Robots = Annotated[
 Seed = Annotated[int | None, typer.Option("--seed", help="Seed of the game, at least 0. [default: 0]")]
 
 
+def check_seed(field: str, seed: int) -> None:
+    """Refuse a seed that is none.
+
+    Raises
+    ------
+    InputError
+        If it is out of range.
+    """
+    if not 0 <= seed <= LAST_SEED:
+        raise InputError(field, seed, f"must be at least 0, at most {LAST_SEED}")
+
+
 def one_run(what: str | None, run: str, condition: str | None, n: int | None, seed: int | None) -> Run:
     """Return the run that is asked for: one of a directory by its digest, or one of a scenario.
 
@@ -112,7 +140,6 @@ def one_run(what: str | None, run: str, condition: str | None, n: int | None, se
     name = found.conditions[0].name if condition is None else condition
     if n is None:
         n = min(found.densities, key=lambda density: abs(density - USUAL_N))
-    if seed is not None and seed < 0:
-        raise InputError("seed", seed, "must be at least 0")
+    check_seed("seed", seed or 0)
     game = found.game(name, n)
     return Run(digest(game, seed or 0), game, seed or 0, ((found.id, name),))

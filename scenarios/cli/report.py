@@ -44,6 +44,9 @@ def report(
     if out is not None and not path.parent.is_dir():
         raise InputError("out", str(path), "must be a file in a directory that exists")
     own = load(findings) if findings is not None else ()
+    for finding in own:
+        if finding.id in {each.id for each in FINDINGS}:
+            raise InputError("findings.id", finding.id, "must not be that of a finding of the thesis")
     plan = {
         name: Planned(
             scenario.title,

@@ -11,7 +11,7 @@ import typer
 from agents.errors import InputError
 from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.choice import chosen, integers, planned, words
-from scenarios.cli.options import Jobs, processes
+from scenarios.cli.options import Jobs, check_seed, directory, processes
 from scenarios.cli.options import ids as ids_to_complete
 from scenarios.cli.progress import KINDS, check_kind, told
 from scenarios.description import Scenario
@@ -19,6 +19,12 @@ from scenarios.runner import RECORDS
 
 # Of a printed table: as wide as it is, for rich would break the cells in a pipe's 80 columns.
 _ANY_WIDTH: Final = 1000
+
+_NEXT: Final = {
+    "report": "all results in one HTML file",
+    "status": "what failed, and how to see it fail again",
+}
+"""What the commands are for that a run names in the end."""
 
 
 def run(
@@ -52,7 +58,8 @@ def run(
         ),
     ] = None,
     out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Where the results go, and are gone on from.")
+        Path,
+        typer.Option(parser=directory, metavar="DIR", help="Where the results go, and are gone on from."),
     ] = Path("results"),
     record: Annotated[
         str, typer.Option(metavar="NAME,...", help=f"More tables to write: {', '.join(RECORDS)}.")
@@ -73,8 +80,7 @@ def run(
     scenarios, left_out = planned(
         chosen(ids or CATALOGUE), integers("densities", densities), seeds, suitable_only=everything
     )
-    if first_seed < 0:
-        raise InputError("first_seed", first_seed, "must be at least 0")
+    check_seed("first_seed", first_seed)
     workers = processes(jobs)
     records = words(record)
     for name in records:
@@ -99,7 +105,8 @@ def run(
         for table_id in dict.fromkeys(ids):
             if table_id in TABLES and tables:
                 _print_table(table_id, out)
-        typer.echo(f"next:   {_next_command(scenarios, out, failed)}")
+        then = "status" if failed else "report"
+        typer.echo(f"next:   kswarms {then} {shlex.quote(str(out))}  ({_NEXT[then]})")
     return 1 if failed else 0
 
 
@@ -161,13 +168,3 @@ def _print_table(table_id: str, out: Path) -> None:
         table.add_row(*cells)
     console = Console(width=_ANY_WIDTH, highlight=False)
     console.print(f"\n{table_id}: {title}", table, text.caption, sep="\n")
-
-
-def _next_command(played: Sequence[Scenario], out: Path, failed: int) -> str:
-    directory = shlex.quote(str(out))
-    if failed:
-        return f"kswarms status {directory}  (what failed, and how to see it fail again)"
-    rest = [scenario_id for scenario_id in CATALOGUE if scenario_id not in {each.id for each in played}]
-    if not rest:
-        return f"kswarms show {played[0].id}  (what was played)"
-    return f"kswarms run {rest[0]} --out {directory}  (`kswarms list` names all)"

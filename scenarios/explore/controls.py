@@ -1,5 +1,6 @@
 """The controls at the side of the page: what is played."""
 
+import math
 from collections.abc import Callable
 from typing import Any, Final
 
@@ -21,15 +22,16 @@ Act = Callable[[Callable[[], None]], None]
 
 MOST_ROBOTS: Final = 100
 _SLIDERS: Final = {
-    "friction": ("Friction μ", 0.0, 1.0, 0.02),
-    "conflict_distance": ("Conflict distance (m)", 0.02, 0.4, 0.01),
-    "flight_duration": ("Flight (s)", 0.1, 5.0, 0.1),
-    "fight_duration": ("Fight (s)", 0.1, 5.0, 0.1),
-    "base_range": ("Base seen from (m)", 0.1, 2.0, 0.02),
-    "leg_mean": ("Mean wander leg (s)", 0.5, 20.0, 0.5),
-    "push_share": ("Push share", 0.0, 1.0, 0.05),
+    "friction": ("Friction μ", (0.0, 1.0, 0.02)),
+    "conflict_distance": ("Conflict distance (m)", (0.02, 0.4, 0.01)),
+    "flight_duration": ("Flight (s)", (0.1, 5.0, 0.1)),
+    "fight_duration": ("Fight (s)", (0.1, 5.0, 0.1)),
+    "base_range": ("Base seen from (m)", (0.1, 2.0, 0.02)),
+    "leg_mean": ("Mean wander leg (s)", (0.5, 20.0, 0.5)),
+    "push_share": ("Push share", (0.0, 1.0, 0.05)),
 }
-"""Parameters of the world that have a slider: label, least, greatest, step."""
+"""Parameters of the world that have a slider: label; least, greatest, step."""
+_DRIVE: Final = (0.05, 1.0, 0.05)
 _KNOWN_POLICIES: Final = [name for name in POLICIES if name != "learned"] + ["mixed"]
 
 
@@ -92,20 +94,24 @@ def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:
             )
 
 
-def _slider(
-    label: str, value: float, least: float, most: float, step: float, on_value: Callable[..., None]
-) -> None:
-    """Show a slider that leaves a value between two steps alone: a browser says the nearest by itself."""
-    nearest = least + round((value - least) / step) * step
-
-    def moved(to: float) -> None:
-        if abs(to - nearest) > step / 4:
-            on_value(to)
-
-    solara.SliderFloat(label, value, min=least, max=most, step=step, on_value=moved)
-
-
 # No components of their own: such a one is drawn anew only where its arguments are others.
+
+
+def _slider(
+    label: str, value: float, scale: tuple[float, float, float], tell: Callable[[float], None]
+) -> None:
+    """Show a slider; a value between its steps stays as it is until it is moved."""
+    # Vuetify reports the nearest value that it can show as if somebody had chosen it.
+    least, greatest, step = scale
+    nearest = min(max(least + round((value - least) / step) * step, least), greatest)
+    solara.SliderFloat(
+        label,
+        value,
+        min=least,
+        max=greatest,
+        step=step,
+        on_value=lambda chosen: None if math.isclose(chosen, nearest, abs_tol=1e-9) else tell(chosen),
+    )
 
 
 def _scenario(session: Session, act: Act) -> None:
@@ -141,21 +147,12 @@ def _swarm(session: Session, k: int, act: Act) -> None:
             class_="kswarms-policy",
         )
         solara.InputInt("Share of the robots", swarm.share, on_value=lambda share: change(share=share))
-        _slider(
-            f"Drive in P {swarm.drive:g}",
-            swarm.drive,
-            least=0.05,
-            most=1.0,
-            step=0.05,
-            on_value=lambda drive: change(drive=drive),
-        )
+        _slider(f"Drive in P {swarm.drive:g}", swarm.drive, _DRIVE, lambda drive: change(drive=drive))
         _slider(
             f"Drive in A {swarm.drive_action:g}",
             swarm.drive_action,
-            least=0.05,
-            most=1.0,
-            step=0.05,
-            on_value=lambda drive: change(drive_action=drive),
+            _DRIVE,
+            lambda drive: change(drive_action=drive),
         )
 
 
@@ -176,14 +173,8 @@ def _learning(session: Session, act: Act) -> None:
             on_value=lambda name: change("reward", name),
         )
         if learning.delta is not None:
-            _slider(
-                f"Δ = {learning.delta:g}",
-                learning.delta,
-                least=0.0,
-                most=0.5,
-                step=0.005,
-                on_value=lambda delta: change("reward", delta=delta),
-            )
+            label = f"Δ = {learning.delta:g}"
+            _slider(label, learning.delta, (0.0, 0.5, 0.005), lambda delta: change("reward", delta=delta))
         solara.Select(
             "Selection rule",
             value=learning.rule,
@@ -191,14 +182,8 @@ def _learning(session: Session, act: Act) -> None:
             on_value=lambda name: change("rule", name),
         )
         if learning.gamma is not None:
-            _slider(
-                f"γ = {learning.gamma:g}",
-                learning.gamma,
-                least=0.0,
-                most=1.0,
-                step=0.005,
-                on_value=lambda gamma: change("rule", gamma=gamma),
-            )
+            label = f"γ = {learning.gamma:g}"
+            _slider(label, learning.gamma, (0.0, 1.0, 0.005), lambda gamma: change("rule", gamma=gamma))
         solara.InputFloat(
             "Time to learn (s)",
             form.learning,
@@ -214,15 +199,13 @@ def _world(session: Session, change: Callable[..., None], act: Act) -> None:
     except InputError:
         parameters = None  # the message above the arena says what is wrong with them
     if parameters is not None:
-        for name, (label, least, greatest, step) in _SLIDERS.items():
-            _slider(
-                f"{label} {getattr(parameters, name):.4g}",
-                getattr(parameters, name),
-                least=least,
-                most=greatest,
-                step=step,
-                on_value=lambda value, name=name: act(lambda: session.change_parameter(name, value)),
-            )
+        for name, (label, scale) in _SLIDERS.items():
+            value = getattr(parameters, name)
+
+            def tell(value: float, name: str = name) -> None:
+                act(lambda: session.change_parameter(name, value))
+
+            _slider(f"{label} {value:.4g}", value, scale, tell)
     solara.InputText("Parameters", form.parameters, on_value=lambda text: change(parameters=text))
     solara.Select(
         "Layout", value=form.layout, values=list(LAYOUTS), on_value=lambda name: change(layout=name)

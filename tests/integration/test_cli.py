@@ -159,7 +159,7 @@ def test_a_run_writes_tables_and_tells_what_to_type_next(capsys: pytest.CaptureF
         "table:  my results/runs.parquet",
         "table:  my results/conflicts.parquet",
         "table:  my results/robots.parquet",
-        "next:   kswarms run fig-6.1a --out 'my results'  (`kswarms list` names all)",
+        "next:   kswarms report 'my results'  (all results in one HTML file)",
     ]
     rows = pq.read_table("my results/runs.parquet").to_pylist()
     assert [(row["n"], row["seed"], row["policy"]) for row in rows] == [(6, 0, "avoid"), (6, 0, "attack")]
@@ -264,7 +264,7 @@ def test_a_figure_is_drawn_of_each_scenario(capsys: pytest.CaptureFixture[str]) 
     assert capsys.readouterr().out.splitlines() == [
         "table:  results/runs.parquet",
         *(f"figure: {picture}" for picture in pictures),
-        "next:   kswarms run fig-6.1c --out results  (`kswarms list` names all)",
+        "next:   kswarms report results  (all results in one HTML file)",
     ]
     assert all(Path(picture).read_bytes().startswith(b"\x89PNG") for picture in pictures)
 
@@ -284,7 +284,7 @@ def test_all_plays_what_the_densities_suit(
     exceptions = {"fig-6.15": {6, 13}, "fig-7.12": {13}, "fig-7.13a": {13}, "fig-7.13b": {13}}
     assert sizes == {name: exceptions.get(name, {6}) for name in CATALOGUE}
     printed = capsys.readouterr()
-    assert printed.out == "next:   kswarms show fig-6.1a  (what was played)\n"
+    assert printed.out == "next:   kswarms report results  (all results in one HTML file)\n"
     assert printed.err == ""
     assert invoke(["run", "--all", "--densities", "6", "--seeds", "1", "--no-figures"]) == 0
     left_out = "kswarms: none of the densities suits fig-7.12, fig-7.13a, fig-7.13b: left out\n"

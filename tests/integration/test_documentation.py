@@ -11,6 +11,7 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
+from analysis.findings import FINDINGS
 from scenarios.cli import invoke
 
 ROOT = Path(__file__).parents[2]
@@ -75,6 +76,15 @@ def test_the_scripts_and_tests_of_the_guides_run() -> None:
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stdout + done.stderr
         assert expected in done.stdout
+
+
+def test_the_readme_counts_the_verdicts_that_the_page_of_findings_gives() -> None:
+    page = (DOCS / "findings.md").read_text(encoding="utf-8")
+    given = re.findall(r"\| \**(holds|fails|undecided)\** \|", page)
+    holds, fails, undecided = map(given.count, ("holds", "fails", "undecided"))
+    told = f"of {len(given)} statements, {holds} hold, {fails} fail and {undecided} are undecided"
+    assert len(given) == len(FINDINGS)
+    assert told in (ROOT / "README.md").read_text(encoding="utf-8")
 
 
 def test_every_command_of_the_documentation_exists() -> None:

@@ -174,6 +174,8 @@ def test_the_page_plays_changes_and_shows_a_learner(browse: Callable[..., Browse
     browser = browse()
     assert browser.time() == "learning, 3000.0 s to the game"
     assert browser.on_top(browser.all("label", "Robots N")[0])
+    shown = "return [...document.querySelectorAll('.kswarms-policy input')].map((field) => field.value)"
+    assert set(browser.driver.execute_script(shown)) == {"attack", "inter-learner"}  # no slider changed them
 
     browser.click("button", "play")
     browser.wait(lambda: browser.time() < "learning, 2990" and browser.time().startswith("learning, 29"))

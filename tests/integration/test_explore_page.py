@@ -6,6 +6,7 @@ import threading
 import time
 import weakref
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,6 +16,7 @@ solara = pytest.importorskip("solara", reason="needs the extra `explore`")
 import ipyvuetify  # noqa: E402  # which comes with solara
 
 from agents.errors import InputError  # noqa: E402
+from agents.selection import UCB  # noqa: E402
 from scenarios.catalogue import CATALOGUE  # noqa: E402
 from scenarios.explore import page  # noqa: E402
 from scenarios.explore.session import Session  # noqa: E402
@@ -156,13 +158,37 @@ def test_learning_can_be_skipped_and_its_controls_change_it(show: Callable[[str]
     _wait(lambda: shown.arena().frame["time"] == 0.0)
     _wait(lambda: "Skip learning" not in shown.texts())
     shown.find(ipyvuetify.Slider, "Δ = 0.125").v_model = 0.2
-    shown.find(ipyvuetify.Slider, "γ = 0.1211").v_model = 0.5
+    shown.find(ipyvuetify.Slider, f"γ = {UCB().gamma:g}").v_model = 0.5
     assert session.player.game.swarms[1].policy == (
         "inter-learner(reward='wlu(delta=0.2)', rule='ucb(gamma=0.5)')"
     )
     shown.find(ipyvuetify.Select, "Reward").v_model = "individual"
     shown.find(ipyvuetify.Select, "Selection rule").v_model = "greedy"
     assert session.player.game.swarms[1].policy == "inter-learner(reward='individual', rule='greedy')"
+
+
+def test_what_a_slider_cannot_show_stays_until_it_is_moved(
+    show: Callable[[str], Shown], tmp_path: Path
+) -> None:
+    (tmp_path / "off.toml").write_text(
+        """
+        id = "off"
+        title = "Between the steps of the sliders"
+        densities = [20]
+        [[conditions]]
+        learning = 10
+        parameters = "fitted, friction=0.1234"
+        swarms = [{ policy = "attack", drive = 0.63 }, { policy = "inter-learner(rule='ucb(gamma=0.1211)')" }]
+        """
+    )
+    shown = show(str(tmp_path / "off.toml"))
+    described = shown.session.form
+    # What Vuetify reports as soon as it has drawn them.
+    for label, nearest in (("Drive in P 0.63", 0.65), ("γ", 0.12), ("Friction", 0.12)):
+        shown.find(ipyvuetify.Slider, label).v_model = nearest
+    assert shown.session.form == described
+    shown.find(ipyvuetify.Slider, "γ").v_model = 0.2
+    assert shown.session.form.swarms[1].policy == "inter-learner(rule='ucb(gamma=0.2)')"
 
 
 def test_every_control_changes_the_game(show: Callable[[str], Shown]) -> None:
@@ -251,7 +277,7 @@ def test_a_robot_can_be_chosen_and_looked_into(show: Callable[[str], Shown]) -> 
     assert facts.rows[0] == ["robot", "10 of S2, inter-learner"]
     assert len(sensors.rows[0]) == 8
     assert [row[0] for row in bandit.rows] == ["flight", "fight"]
-    assert "UCB(gamma=0.1211); learns" in shown.texts()
+    assert f"{UCB()!r}; learns" in shown.texts()
     shown.arena().vue_choose(0)
     assert (session.chosen, shown.arena().frame["chosen"]) == (0, 0)
     assert shown.tables()[0].rows[0] == ["robot", "0 of S1, attack"]

@@ -24,14 +24,14 @@ def test_three_lines_assert_a_finding(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    command = re.search(r"`kswarms (run .*? --out results/crowd)`", PAGE.read_text(encoding="utf-8"))
+    command = re.search(r"`kswarms (run .*? --out results/fighters)`", PAGE.read_text(encoding="utf-8"))
     assert command
     assert invoke([*command[1].split(), "--no-figures", "--jobs", "1"]) == 0
     names: dict[str, Any] = {}
-    exec(block("test_crowd.py"), names)  # what pytest does with a file of tests: run it, call what it defines
+    exec(block("test_fighters.py"), names)  # as pytest runs a file of tests, then calls what it defines
 
-    (tmp_path / "crowd.toml").write_text(block("crowd.toml"), encoding="utf-8")
+    (tmp_path / "fighters.toml").write_text(block("fighters.toml"), encoding="utf-8")
     names["test_fighters_gather_less"]()
-    (tmp_path / "crowd.toml").write_text(block("crowd.toml").replace('"<"', '">"'), encoding="utf-8")
+    (tmp_path / "fighters.toml").write_text(block("fighters.toml").replace('"<"', '">"'), encoding="utf-8")
     with pytest.raises(AssertionError, match="fighters-gather-less fails: -"):
         names["test_fighters_gather_less"]()

@@ -152,6 +152,10 @@ def test_scenarios_of_ones_own_have_a_chapter_of_their_own(tmp_path: Path) -> No
         ),
         ("good --out empty", "out='empty': must be a place that can be written"),
         ("good --findings none.toml", "findings='none.toml': must be a readable TOML file"),
+        (
+            "good --findings taken.toml",
+            "findings.id='6.1a-alike': must not be that of a finding of the thesis",
+        ),
         ("good --files good/runs.parquet", "files='good/runs.parquet': must be a folder"),
     ],
 )
@@ -167,6 +171,7 @@ def test_bad_input_is_refused_in_one_line_and_nothing_is_written(
     for name in ("empty", "broken", "corrupt", "good"):
         Path(name).mkdir()
     Path("broken/runs.parquet").write_bytes(b"PAR1")
+    Path("taken.toml").write_text(OWN.replace('id = "', 'id = "6.1a-alike" # "'))
     for name in ("corrupt", "good"):
         study.write_study(Path(name), [CATALOGUE["fig-6.1a"]], densities=2, seeds=1)
     Path("corrupt/conflicts.parquet").write_bytes(b"PAR1")

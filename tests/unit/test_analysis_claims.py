@@ -65,6 +65,7 @@ def test_a_finding_can_be_changed() -> None:
     [
         ("findings = 3", r"findings=3: must be a valid tuple"),
         ("", r"findings=None: is required"),
+        (f"findings = {'[' * 3000}", "must be TOML: maximum recursion"),
         ("findings = []", r"findings=\[\]"),
         ("not TOML", r"findings='.*mine\.toml': must be TOML: Expected '='"),
         (

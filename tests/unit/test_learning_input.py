@@ -79,6 +79,19 @@ def test_an_opponent_that_is_not_in_the_game_is_refused(name: str, opponent: int
 
 
 @pytest.mark.parametrize(
+    ("about", "unknown", "known"), [("inter-learner", 2, 1), ("intra-learner", 1, 2)]
+)
+@pytest.mark.parametrize("name", ["delta", "b"])
+def test_an_opponent_that_nothing_is_learned_about_is_refused(
+    name: str, about: str, unknown: int, known: int
+) -> None:
+    setting = SETTING._replace(swarm=1, swarms=2)
+    make_policy(f"{about}(reward='wlu({name}={{{known}: 0.5}})')", setting)
+    with pytest.raises(InputError, match=f"names swarm {unknown}, which it learns nothing about"):
+        make_policy(f"{about}(reward='wlu({name}={{{unknown}: 0.5}})')", setting)
+
+
+@pytest.mark.parametrize(
     "text",
     [
         "avoid(within=1)",

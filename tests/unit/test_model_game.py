@@ -109,6 +109,15 @@ def test_every_layout_has_an_arena(layout: str) -> None:
             "n=20: robots of radius",
         ),
         ({"parameters": {"period": 0.5}}, "period=0.5: must be so short"),
+        ({"side": 1e7}, "side=10000000.0: must be less than or equal to 10000"),
+        ({"side": True}, "side=True: must be a number"),
+        ({"puck_limit": True}, "puck_limit=True: must be a number"),
+        ({"duration": 1e300}, "duration=1e+300: must be at most 9007199254740992 periods"),
+        ({"learning": 1e300}, "duration=600.0: must be at most 9007199254740992 periods, learning included"),
+        ({"supply": 2**63}, "supply=9223372036854775808: must be less than or equal to 1000000000"),
+        ({"layout": "nearer-station", "swarms": (AVOID,) * 3}, "layout='nearer-station': must have"),
+        ({"layout": "random-stations", "parameters": {"station_radius": 0.6}}, "station_radius=0.6: "),
+        ({"layout": "random-stations", "parameters": {"base_radius": 0.9}}, "base 1="),
         ({"body": "krembot", "parameters": {"period": 0.2}}, "period=0.2: must be so short"),
         (
             {

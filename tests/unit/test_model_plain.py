@@ -120,6 +120,13 @@ def test_a_number_of_numpy_will_do() -> None:
         ({"sample_period": "often"}, "sample_period='often': "),
         ({"parameters": "fitted, station_radius=1.5", "layout": "random-stations"}, "station_radius=1.5: "),
         ({"parameters": "fitted, wall_distance=1.5"}, "wall_distance=1.5: "),
+        ({"policies": ["avoid", "attack"]}, "policies=['avoid', 'attack']: must be a text"),
+        ({"policies": None}, "policies=None: must be a text"),
+        ({"shares": 3}, "shares=3: must be a text"),
+        ({"drives": 0.6}, "drives=0.6: must be a text"),
+        ({"parameters": None}, "parameters=None: must be a text"),
+        ({"record": ["model"]}, "record=['model']: must be a text"),
+        ({"seed": True}, "seed=True: must be a whole number"),
     ],
 )
 def test_bad_input_is_one_line_with_field_value_and_what_is_allowed(

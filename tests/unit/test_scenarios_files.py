@@ -58,6 +58,12 @@ def test_a_file_says_no_more_than_what_differs_from_the_defaults(tmp_path: Path)
         (HUNT, "scenarios = []", "hunt.toml: scenarios=[]: must be some, and all"),
         (HUNT, "scenarios = [3]", "hunt.toml: scenarios.0=3: must be a table"),
         (HUNT, "[[scenarios]]\nid = 3", "hunt.toml: scenarios.0: id=3: must be a valid string"),
+        ('"hunt"', f'"{"a" * 101}"', "hunt.toml: id='aaa"),
+        ("Two avoid one", "Two avoid\\u0000one", "hunt.toml: title='Two avoid\\x00one': "),
+        ("duration = 60", 'name = "a\\nb"', "hunt.toml: conditions.0.name='a\\nb': "),
+        ("seeds = 3", "seeds = true", "hunt.toml: seeds=True: must be a number"),
+        ("seeds = 3", "seeds = 1000001", "hunt.toml: seeds=1000001: must be less than"),
+        (HUNT, f"id = {'[' * 3000}", "id='FILE': must be a file of TOML (maximum recursion"),
         (HUNT, "", "hunt.toml: id=None: is required"),
     ],
 )
@@ -78,6 +84,12 @@ def test_bytes_that_are_no_text_are_refused(tmp_path: Path) -> None:
     for path in (tmp_path / "noise.toml", tmp_path / "absent.toml", tmp_path):
         with pytest.raises(InputError, match="must be a file of TOML"):
             read_scenarios(path)
+
+
+def test_the_mark_that_some_editors_put_first_is_no_mistake(tmp_path: Path) -> None:
+    file = tmp_path / "hunt.toml"
+    file.write_text(HUNT, encoding="utf-8-sig")
+    assert read_scenarios(file)[0].id == "hunt"
 
 
 def test_two_scenarios_of_one_id_must_be_the_same(tmp_path: Path) -> None:

@@ -1,0 +1,97 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation: {extension: .py, format_name: percent}
+#   kernelspec: {display_name: Python 3, language: python, name: python3}
+# ---
+
+# %% [markdown]
+# # The interaction network
+#
+# Who met whom, where, and who held whom up. All of it is in the recorded conflicts of a game.
+
+# %%
+# %matplotlib inline
+import matplotlib.pyplot as plt
+import pandas as pd
+import seaborn as sns
+
+from analysis.maps import heat_maps
+from analysis.networks import describe, jams, jams_figure, meeting_network, mixing_matrix, network_figure
+from model.plain import ForagingModel
+
+model = ForagingModel(n=36, policies="avoid,attack", duration=600, seed=1, record="conflicts")
+model.play()
+conflicts = model.datacollector.get_table_dataframe("conflicts")
+conflicts[["robot", "swarm", "opponent", "opponent_swarm", "start", "x", "y", "action", "t_a", "t_p"]].head(3)
+
+# %% [markdown]
+# Conflicts that `kswarms run … --record conflicts` has written are read by
+# `analysis.results.read_conflicts(directory)`; take those of one `run`.
+#
+# ## Who met whom
+#
+# The network is a graph of networkx: a node for each robot, an edge for each pair that met, with how often
+# and how long. Whatever networkx computes, it computes of it.
+
+# %%
+network = meeting_network(conflicts)
+pd.Series(describe(network)).round(3)
+
+# %% [markdown]
+# `assortativity` is Newman's, by swarm-ID: above `chance`, robots meet their own more than others, below it
+# less. `assortativity_time` weights pairs by the time that they spent in conflict with each other.
+
+# %%
+network_figure(network, "36 robots, S1 avoids, S2 attacks")
+
+# %% [markdown]
+# The same swarm by swarm, in robot-seconds of conflict; those within a swarm count from both sides.
+
+# %%
+names = ["S1", "S2"]
+pd.DataFrame(mixing_matrix(network, "time"), index=names, columns=names).round()
+
+# %% [markdown]
+# ## Jams
+#
+# At each second the conflicts that go on link robots. Three or more that hang together are a jam.
+
+# %%
+jams_figure(jams(conflicts), "36 robots, S1 avoids, S2 attacks")
+
+# %% [markdown]
+# ## Where conflicts happen
+#
+# Conflicts begun in each 5 × 5 cm, on a logarithmic scale: all, and those answered with each action.
+
+# %%
+heat_maps(conflicts, "36 robots, S1 avoids, S2 attacks", places=model.arena)
+
+# %% [markdown]
+# ## What changes with the crowd
+#
+# The same measures for three pairs of policies, at three densities.
+
+# %%
+rows = []
+for policies in ("avoid,avoid", "avoid,attack", "attack,attack"):
+    for n in (12, 24, 36):
+        game = ForagingModel(n=n, policies=policies, duration=300, seed=0, record="conflicts")
+        game.play()
+        table = game.datacollector.get_table_dataframe("conflicts")
+        rows.append(
+            {
+                "policies": policies,
+                "N": n,
+                "inter": describe(meeting_network(table))["inter"],
+                "jammed": jams(table)["jammed"].mean() / n,
+            }
+        )
+figure, axes = plt.subplots(1, 2, figsize=(10, 3.8), layout="constrained")
+labels = {"inter": "share of conflict time between swarms", "jammed": "share of robots in jams"}
+for quantity, at in zip(labels, axes, strict=True):
+    legend = quantity == "jammed"  # one for both
+    sns.lineplot(pd.DataFrame(rows), x="N", y=quantity, hue="policies", marker="o", legend=legend, ax=at)
+    at.set(xlabel="number of robots in all, N", ylabel=labels[quantity], ylim=(0, 1), xticks=(12, 24, 36))
+axes[1].legend(loc="lower right", title="policies");

@@ -1,0 +1,175 @@
+"""Code of a user's own that passes its trial and goes wrong in a game, or while games are played."""
+
+import gc
+import weakref
+from pathlib import Path
+
+import pytest
+
+from agents.errors import InputError
+from model.foraging import GameModel
+from model.plain import ForagingModel
+from model.recording import save_policies
+from scenarios.cli import invoke
+from scenarios.ledger import FILE, Ledger
+from scenarios.overview import failures
+
+POLICY = """
+import os
+import sys
+from pathlib import Path
+
+from agents.actions import Action
+from simpy.core import StopSimulation
+
+
+class Faulty:
+    def __init__(self, setting):
+        self.actions = setting.actions
+        self.asked = 0
+
+    def choose(self, opponent):
+        self.asked += 1
+        if self.asked > 8:  # the trial asks fewer times
+            FAULT
+        return self.actions[0]
+"""
+REWARD = """
+from agents.rewards import Reward
+
+
+class Faulty(Reward):
+    def of(self, t_a, t_p, n_active, direction, inter, opponent):
+        return FAULT if t_p not in (0.0, 6.0) else 1.0
+"""
+RULE = """
+from agents.selection import Rule
+
+
+class Faulty(Rule):
+    def prefer(self, bandit, draws):
+        return 0 if bandit.choices < 5 else FAULT
+"""
+SCENARIO = """
+id = "faulty"
+title = "Own code"
+densities = [12]
+seeds = 2
+[[conditions]]
+duration = 60
+learning = 60
+swarms = [{ policy = "avoid" }, { policy = "POLICY" }]
+"""
+RUN = ["run", "mine.toml", "--jobs", "1", "--quiet", "--no-figures"]
+
+
+@pytest.fixture(autouse=True)
+def _in_a_directory_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def errors_of(code: str, policy: str = "faulty.py:Faulty") -> list[str]:
+    """Play a scenario with faulty code, and return how its runs failed."""
+    Path("faulty.py").write_text(code)
+    Path("mine.toml").write_text(SCENARIO.replace("POLICY", policy))
+    assert invoke(RUN) == 1
+    with Ledger(Path("results", FILE)) as ledger:
+        return [failed.error for failed in failures(ledger)]
+
+
+@pytest.mark.parametrize(
+    ("fault", "error"),
+    [
+        ("return None", "must return an action of the game, not None"),
+        ("return 'fight'", "must return an action of the game, not 'fight'"),
+        # Its name is that of an action of the game, it is another: it would be played unnoticed.
+        ("return Action(name='fight', direction=-1, duration=30)", "must return an action of the game, not "),
+        ("raise StopSimulation(None)", "RuntimeError: the clock was stopped at "),
+        ("sys.exit(0)", "SystemExit: 0"),
+        ("return self.choose(opponent)", "RecursionError: "),
+    ],
+)
+def test_a_policy_that_goes_wrong_in_the_game_fails_its_runs(fault: str, error: str) -> None:
+    failed = errors_of(POLICY.replace("FAULT", fault))
+    assert len(failed) == 2
+    assert all(error in line for line in failed)
+
+
+@pytest.mark.parametrize("fault", ["os.remove(__file__)", "Path(__file__).write_text('# another')"])
+def test_a_file_that_goes_or_changes_meanwhile_fails_the_rest_and_keeps_what_was_played(fault: str) -> None:
+    (error,) = errors_of(POLICY.replace("FAULT", f"self.asked == 9 and os.path.exists(__file__) and {fault}"))
+    assert "policy='faulty.py': must not change while its games are played" in error
+    assert Path("results", "runs.parquet").exists()
+
+
+@pytest.mark.parametrize("value", ["float('nan')", "float('inf')"])
+def test_a_reward_that_is_no_number_fails_the_run_before_it_is_learned_from(value: str) -> None:
+    failed = errors_of(REWARD.replace("FAULT", value), "inter-learner(reward='faulty.py:Faulty')")
+    assert len(failed) == 2
+    assert all("reward=" in line and "must be finite, also for T(a)=" in line for line in failed)
+
+
+@pytest.mark.parametrize("arm", ["-1", "2"])
+def test_a_rule_that_chooses_what_is_no_arm_fails_the_run(arm: str) -> None:
+    failed = errors_of(RULE.replace("FAULT", arm), "inter-learner(rule='faulty.py:Faulty')")
+    assert failed == [f"InputError: rule={arm}: must choose 0 to 1"] * 2
+
+
+def test_a_rule_that_breaks_the_bandit_is_told_before_the_game(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("faulty.py").write_text(RULE.replace("return", "bandit.count.clear(); return"))
+    Path("mine.toml").write_text(SCENARIO.replace("POLICY", "inter-learner(rule='faulty.py:Faulty')"))
+    assert invoke(RUN) == 2
+    assert "rule='faulty.py:Faulty': choose(…) " in capsys.readouterr().err
+    assert not Path("results").exists()
+
+
+@pytest.mark.parametrize(("opponent", "action"), [(3, "fight"), (0, "fight"), (1, "dance")])
+def test_what_a_policy_says_that_it_learned_must_be_of_the_game(opponent: int, action: str) -> None:
+    arm = {"opponent": opponent, "action": action, "reward": 1.0, "time": 1.0, "count": 1.0, "q": 1.0}
+    told = f"    def snapshot(self):\n        return [{arm}]\n"
+    Path("faulty.py").write_text(POLICY.replace("FAULT", "pass") + "\n" + told)
+    with pytest.raises(InputError, match=r"snapshot\(\) must tell of the game's actions and swarms, not "):
+        ForagingModel(n=4, policies="avoid,faulty.py:Faulty")
+
+
+def test_a_stopped_clock_is_told_by_a_step_too() -> None:
+    Path("faulty.py").write_text(POLICY.replace("FAULT", "raise StopSimulation(None)"))
+    model = ForagingModel(n=12, policies="avoid,faulty.py:Faulty", duration=60)
+    with pytest.raises(RuntimeError, match=r"the clock was stopped at \d+"):  # noqa: PT012  # in which, none can tell
+        while model.running:
+            model.step()
+
+
+def test_a_game_that_is_over_is_not_kept_alive() -> None:
+    model = ForagingModel(n=4, duration=10)
+    model.play()
+    alive = weakref.ref(model)
+    del model
+    gc.collect()
+    assert alive() is None
+
+
+@pytest.mark.parametrize("swarm", [0, 3, -1])
+def test_policies_are_saved_of_a_swarm_of_the_game_alone(swarm: int) -> None:
+    model: GameModel = ForagingModel(n=4, policies="learner,learner", learning=10, duration=10)
+    with pytest.raises(InputError, match=f"swarm={swarm}: must be in 1 to 2"):
+        save_policies(model, swarm, Path("learned.json"))
+    assert not Path("learned.json").exists()
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ('"swarm": 1', '"swarm": Infinity'),
+        ('"q": null', '"q": 1.0'),
+        ('"robots"', f'"x": {"[" * 99999}, "robots"'),
+    ],
+)
+def test_a_damaged_file_of_learned_policies_is_refused(before: str, after: str) -> None:
+    model = ForagingModel(n=4, policies="learner,avoid", learning=0, duration=0.1)
+    path = Path("learned.json")
+    save_policies(model, 1, path)
+    assert before in path.read_text()
+    path.write_text(path.read_text().replace(before, after))
+    with pytest.raises(InputError, match="must be a file of learned policies"):
+        ForagingModel(n=4, policies="learned(file='learned.json'),avoid")
