@@ -161,6 +161,10 @@ class GameModel(mesa.Model):
             self._collect()
         self.running = False
 
+    def forget(self) -> None:
+        """Drop what Mesa keeps of every model in a table of its class, so that this one can be freed."""
+        mesa.Agent._ids.pop(self, None)
+
     def times(self, swarm: int) -> tuple[list[int], int]:
         """Return a swarm's T(a), by the opponent's swarm, and T(p), up to now (robot-periods)."""
         t_a = [0] * len(self.members)
