@@ -6,6 +6,7 @@ import typer
 
 from agents.errors import InputError
 from scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Watched, one_run
+from scenarios.cli.printing import print_columns
 
 
 def conflicts(
@@ -34,6 +35,4 @@ def conflicts(
         and (begin is None or account.start - found.game.learning >= begin)
         and (end is None or account.start - found.game.learning <= end)
     ]
-    widths = [max(map(len, column)) for column in zip(TOLD, *rows, strict=True)]
-    for row in (TOLD, *rows):
-        typer.echo("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+    print_columns([TOLD, *rows], left=range(len(TOLD)))

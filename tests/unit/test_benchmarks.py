@@ -13,6 +13,7 @@ from benchmarks import bench
 from benchmarks import report as report_benchmark
 from benchmarks.bench import Plan, WorkError, count_work, time_game
 from model.foraging import GameModel
+from model.percepts import CONFLICT, WALL
 from scenarios.catalogue import CATALOGUE
 from scenarios.tables import POLICIES, RUNS
 
@@ -59,7 +60,8 @@ def test_robots_that_see_nobody_are_noticed(monkeypatch: pytest.MonkeyPatch) -> 
     decide = GameModel._decide
 
     def blind(model: GameModel, now: int, size: int) -> None:
-        model._kernel.events["kind"][:size] %= 3  # no conflicts any more
+        kind = model._kernel.events["kind"][:size]
+        kind[kind == CONFLICT] = WALL
         decide(model, now, size)
 
     monkeypatch.setattr(GameModel, "_decide", blind)
