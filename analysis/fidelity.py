@@ -10,11 +10,11 @@ from scipy import stats
 from agents.errors import InputError
 from analysis.printed import NONE, PrintedTable, with_interval
 from analysis.published import argos_fixed_policies
+from analysis.statistics import CONFIDENCE
 
 SHARE_TOLERANCE = 0.06
 SCORE_TOLERANCE = 0.2
 PUCK_TOLERANCE = 1.5
-CONFIDENCE = 0.95
 
 _ROW = ["scenario", "n", "swarm"]
 # Means of counts over 10 and 20 seeds fall on the tolerances exactly: rounding must not decide.

@@ -8,13 +8,11 @@ and 100 %. A single seed has no interval.
 from collections.abc import Sequence
 
 import pandas as pd
-from scipy import stats
 
 from agents.errors import InputError
 from analysis.printed import PrintedTable, number, span, with_interval
 from analysis.published import learned_percentages
-
-CONFIDENCE = 0.95
+from analysis.statistics import student_reach
 
 _COLUMN = ["scenario", "condition", "swarm", "opponent"]
 _CELL = [*_COLUMN, "n"]
@@ -65,7 +63,7 @@ def learned(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataFrame:
         .reset_index()
         .merge(learned_percentages(), how="left", on=["scenario", "learned", "n"])
     )
-    reach = stats.t.ppf(0.5 + CONFIDENCE / 2, cells["seeds"].to_numpy() - 1) * cells["deviation"]
+    reach = student_reach(cells["deviation"].to_numpy(), cells["seeds"].to_numpy())
     cells = cells.assign(
         low=(cells["measured"] - reach).clip(lower=0),
         high=(cells["measured"] + reach).clip(upper=100),

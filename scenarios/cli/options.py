@@ -2,18 +2,13 @@
 
 import os
 from pathlib import Path
-from typing import Annotated, Final
+from typing import Annotated
 
 import typer
 
 from agents.errors import InputError
-from scenarios.choice import chosen
+from scenarios.choice import FIRST_SCENARIO, USUAL_N, chosen
 from scenarios.runs import Run, digest
-
-FIRST_SCENARIO: Final = "fig-6.1c"
-"""What is watched if nothing is asked for …"""
-USUAL_N: Final = 20
-"""… and with how many robots, or nearly."""
 
 Jobs = Annotated[int | None, typer.Option(help="Processes that play. [default: one for each CPU]")]
 
