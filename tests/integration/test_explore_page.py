@@ -155,7 +155,7 @@ def test_learning_can_be_skipped_and_its_controls_change_it(show: Callable[[str]
     _wait(lambda: shown.arena().frame["time"] == 0.0)
     _wait(lambda: "Skip learning" not in shown.texts())
     shown.find(ipyvuetify.Slider, "Δ = 0.125").v_model = 0.2
-    shown.find(ipyvuetify.Slider, "γ = 0.155").v_model = 0.5
+    shown.find(ipyvuetify.Slider, "γ = 0.1211").v_model = 0.5
     assert session.player.game.swarms[1].policy == (
         "inter-learner(reward='wlu(delta=0.2)', rule='ucb(gamma=0.5)')"
     )
@@ -233,7 +233,7 @@ def test_a_robot_can_be_chosen_and_looked_into(show: Callable[[str], Shown]) -> 
     assert facts.rows[0] == ["robot", "10 of S2, inter-learner"]
     assert len(sensors.rows[0]) == 8
     assert [row[0] for row in bandit.rows] == ["flight", "fight"]
-    assert "UCB(gamma=0.155); learns" in shown.texts()
+    assert "UCB(gamma=0.1211); learns" in shown.texts()
     shown.arena().vue_choose(0)
     assert (session.chosen, shown.arena().frame["chosen"]) == (0, 0)
     assert shown.tables()[0].rows[0] == ["robot", "0 of S1, attack"]

@@ -59,8 +59,8 @@ def test_a_flight_turns_to_the_most_vacant_direction(scene: Scene) -> None:
     model.env.run(until=turn + 1)
     assert pose(model)[2] == pytest.approx(math.pi / 2)
     assert pose(model)[1] == pytest.approx(0.015)
-    model.env.run(until=turn + 19)
-    assert model.robots[0].t_a == [0, turn + 18]
+    model.env.run(until=turn + 18)
+    assert model.robots[0].t_a == [0, turn + 17]
 
 
 def test_a_conflict_is_logged_as_it_was_at_its_start(scene: Scene) -> None:
@@ -116,8 +116,8 @@ def test_the_nearest_robot_ahead_is_met(scene: Scene) -> None:
 @pytest.mark.parametrize(
     ("distance", "bearing", "met"),
     [
-        (0.309, 0.0, True),  # a gap of 0.139 m
-        (0.311, 0.0, False),
+        (0.341, 0.0, True),  # a gap of 0.171 m
+        (0.343, 0.0, False),
         (0.25, math.radians(62), True),
         (0.25, math.radians(-62), True),
         (0.25, math.radians(63), False),

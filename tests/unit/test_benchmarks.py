@@ -60,8 +60,8 @@ def test_robots_that_see_nobody_are_noticed(monkeypatch: pytest.MonkeyPatch) -> 
     decide = GameModel._decide
 
     def blind(model: GameModel, now: int, size: int) -> None:
-        kind = model._kernel.events["kind"][:size]
-        kind[kind == CONFLICT] = WALL
+        kinds = model._kernel.events["kind"][:size]
+        kinds[kinds == CONFLICT] = WALL
         decide(model, now, size)
 
     monkeypatch.setattr(GameModel, "_decide", blind)

@@ -57,12 +57,12 @@ def test_a_parameter_is_named_only_where_the_preset_has_another_value() -> None:
 @pytest.mark.parametrize(
     ("policies", "seen"),
     [
-        (["avoid", "inter-learner"], ("wlu", "ucb", 0.125, 0.155)),
+        (["avoid", "inter-learner"], ("wlu", "ucb", 0.125, 0.1211)),
         (["learner(reward='wlu(delta=0.2, b=1.1)', rule='greedy')"], ("wlu", "greedy", 0.2, None)),
-        (["avoid+intra-learner(reward='single-swarm')"], ("single-swarm", "ucb", None, 0.155)),
-        (["learner(reward='wlu(delta={1: 0.1, 3: 0.2})')"], ("wlu", "ucb", None, 0.155)),
-        (["learner(reward='mine.py:Own')"], ("mine.py:Own", "ucb", None, 0.155)),
-        (["learner(rule=", "learner"], ("wlu", "ucb", 0.125, 0.155)),
+        (["avoid+intra-learner(reward='single-swarm')"], ("single-swarm", "ucb", None, 0.1211)),
+        (["learner(reward='wlu(delta={1: 0.1, 3: 0.2})')"], ("wlu", "ucb", None, 0.1211)),
+        (["learner(reward='mine.py:Own')"], ("mine.py:Own", "ucb", None, 0.1211)),
+        (["learner(rule=", "learner"], ("wlu", "ucb", 0.125, 0.1211)),
         (["avoid", "mixed"], None),
     ],
 )

@@ -9,7 +9,6 @@ import pytest
 
 from agents.actions import TOWARDS
 from agents.fleet import ACTION
-from agents.selection import UCB
 from model.foraging import GameModel
 from model.game import Game, Swarm
 from scenarios.explore import player as player_module
@@ -161,7 +160,7 @@ def test_a_robot_is_seen_as_it_is() -> None:
         assert all(sensor.active == (sensor.free <= limit) for sensor in view.sensors)
         assert all(sensor.free <= model.game.body_preset.sensor_range for sensor in view.sensors)
     learner, fighter = look_into(model, 7), look_into(model, 0)
-    assert (list(learner.bandits), learner.learning, learner.rule) == ([1], True, repr(UCB()))
+    assert (list(learner.bandits), learner.learning, learner.rule) == ([1], True, "UCB(gamma=0.1211)")
     assert [arm.action for arm in learner.bandits[1]] == ["flight", "fight"]
     assert (fighter.bandits, fighter.learning, fighter.rule) == ({}, False, "")
     player.seek(1.0)

@@ -53,9 +53,13 @@ def as_equals(rule: Rule, known: Bandit) -> set[int]:
 def test_ucb_worked_by_hand() -> None:
     # N = 3 + 1, ln 4 = 1.38629, γ ln N = 0.155 · 1.38629 = 0.214876.
     # Bonuses: sqrt(0.214876 / 3) = 0.267629, sqrt(0.214876 / 1) = 0.463547, difference 0.195918.
-    assert UCB() == UCB(gamma=0.155)
-    assert chosen(UCB(), bandit((0.5, 3), (0.3040, 1))) == 0  # 0.767629 > 0.767547
-    assert chosen(UCB(), bandit((0.5, 3), (0.3042, 1))) == 1  # 0.767629 < 0.767747
+    rule = UCB(gamma=0.155)
+    assert chosen(rule, bandit((0.5, 3), (0.3040, 1))) == 0  # 0.767629 > 0.767547
+    assert chosen(rule, bandit((0.5, 3), (0.3042, 1))) == 1  # 0.767629 < 0.767747
+
+
+def test_gamma_is_the_fitted_one_unless_given() -> None:
+    assert UCB() == UCB(gamma=0.1211)
 
 
 def test_ucb_worked_by_hand_with_three_arms() -> None:
@@ -196,7 +200,7 @@ def test_discounted_ucb_is_the_definition_over_the_whole_history(discount: float
 
 
 def test_discounting_defaults_and_what_it_is_of() -> None:
-    assert DiscountedUCB() == DiscountedUCB(gamma=0.155, discount=0.99)
+    assert DiscountedUCB() == DiscountedUCB(gamma=0.1211, discount=0.99)
     assert {name for name, rule in RULES.items() if rule().factor != 1.0} == {"discounted-ucb"}
 
 
