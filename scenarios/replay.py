@@ -113,11 +113,11 @@ class Accounts:
     def __init__(self, model: "GameModel") -> None:
         self._table = model.datacollector.tables["conflicts"]
         self._learners = {
-            robot.index: robot.policy for robot in model.robots if isinstance(robot.policy, Learner)
+            robot.number: robot.policy for robot in model.robots if isinstance(robot.policy, Learner)
         }
         self._bandits = {
-            (index, opponent): Bandit(len(learner.actions))
-            for index, learner in self._learners.items()
+            (robot, opponent): Bandit(len(learner.actions))
+            for robot, learner in self._learners.items()
             for opponent in learner.bandits
         }
 
@@ -151,8 +151,6 @@ def conflicts_of(run: Run) -> list[ConflictAccount]:
     run : Run
         What is played.
     """
-    from mesa import Agent
-
     from model.foraging import GameModel
 
     model = GameModel(run.game, seed=run.seed, record="conflicts")
@@ -160,7 +158,7 @@ def conflicts_of(run: Run) -> list[ConflictAccount]:
         model.play()
         return sorted(Accounts(model).take(), key=lambda account: (account.start, account.robot))
     finally:
-        Agent._ids.pop(model, None)  # Mesa's table of the class would keep the model alive
+        model.forget()
 
 
 TOLD: Final = (
