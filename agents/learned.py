@@ -4,11 +4,11 @@ import json
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
 from agents.actions import AWAY, Action
 from agents.errors import InputError
+from agents.files import whole
 from agents.validation import Checked
 
 if TYPE_CHECKING:
@@ -121,10 +121,8 @@ def save(path: Path, swarm: int, robots: Sequence[Sequence[Mapping[str, Any]]]) 
     """
     known = [[_without_nan(arm) for arm in arms] for arms in robots]
     text = json.dumps({"format": _FORMAT, "swarm": swarm, "robots": known}, indent=1)
-    with TemporaryDirectory(dir=path.parent, prefix=".unfinished-") as unfinished:
-        file = Path(unfinished, path.name)
+    with whole(path) as file:
         file.write_text(text, encoding="utf-8")
-        file.replace(path)
 
 
 def _without_nan(arm: Mapping[str, Any]) -> dict[str, Any]:

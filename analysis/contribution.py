@@ -19,6 +19,7 @@ from scipy import stats
 
 from agents.errors import InputError
 from agents.theory.swarms import swarm_utility_difference
+from analysis.statistics import CONFIDENCE, student_reach
 from analysis.utilities import COLUMNS, robot_utilities, swarm_utilities
 
 Floats = NDArray[np.float64]
@@ -26,7 +27,6 @@ Statistic = Callable[[Floats], Floats]
 """Maps what belongs to the seeds, drawn again and again, to one number for each time."""
 
 FILE: Final = "contribution.parquet"
-CONFIDENCE: Final = 0.95
 FEWEST_ROBOTS: Final = 3
 """Of which ranks are compared: two are in the same order or they are not."""
 
@@ -145,7 +145,7 @@ def means(rows: pd.DataFrame) -> pd.DataFrame:
     for quantity in quantities:
         values = groups[quantity]
         mean = table[quantity] = values.mean()
-        reach = stats.t.ppf(0.5 + CONFIDENCE / 2, values.count() - 1) * values.sem()
+        reach = student_reach(values.sem(), values.count())
         table[f"{quantity}_low"], table[f"{quantity}_high"] = mean - reach, mean + reach
     table = table.reset_index()
     return table.sort_values(["swarm", "robot"], key=lambda column: column.where(column >= 0, np.inf))
@@ -267,7 +267,7 @@ def _student(values: Floats) -> tuple[float, float, float]:
     if len(values) < 2:
         return (float(values.mean()) if len(values) else np.nan), np.nan, np.nan
     mean = float(values.mean())
-    reach = float(stats.t.ppf(0.5 + CONFIDENCE / 2, len(values) - 1) * stats.sem(values))
+    reach = float(student_reach(stats.sem(values), len(values)))
     return mean, mean - reach, mean + reach
 
 

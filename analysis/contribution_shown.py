@@ -18,8 +18,9 @@ from analysis.contribution import (
     rank_correlations,
     read,
 )
-from analysis.drawing import DETAILED, Form, brief, legend_below, sheet
+from analysis.drawing import DETAILED, Form, brief, heading, legend_below, sheet
 from analysis.pictures import save
+from analysis.printed import with_interval
 
 
 def scatter(rows: pd.DataFrame, title: str = "") -> Figure:
@@ -39,10 +40,10 @@ def scatter(rows: pd.DataFrame, title: str = "") -> Figure:
     """
     first, seeds, measures = rows.iloc[0], rows["seed"].nunique(), measures_of(rows)
     absent = "from learning and game" if first["absent_from"] == "learning" else "from the measured game"
-    name = f"{first['scenario']}: {title}" if title else first["scenario"]
-    heading = [name, first["condition"], f"N = {first['n']}", f"robots absent {absent}"]
+    name = heading(first["scenario"], title)
+    above = [name, first["condition"], f"N = {first['n']}", f"robots absent {absent}"]
     robots, correlations = means(rows), rank_correlations(rows)
-    with sheet(", ".join(filter(None, heading)), 5.5 * len(measures) + 1, 5.5) as figure:
+    with sheet(", ".join(filter(None, above)), 5.5 * len(measures) + 1, 5.5) as figure:
         panels = figure.subplots(1, len(measures), squeeze=False)[0]
         for axes, measure in zip(panels, measures, strict=True):
             axes.axhline(0, color="0.4", linewidth=1)
@@ -82,18 +83,14 @@ def _reach(table: pd.DataFrame, quantity: str) -> pd.Series:
 def _title(correlations: pd.DataFrame) -> str:
     lines = []
     for found in correlations.to_dict("records"):
-        robots, games = (with_interval(found, name) for name in ("robots", "games"))
+        robots, games = (_told(found, name) for name in ("robots", "games"))
         lines.append(f"S{found['swarm']}: rank correlation of robots {robots}, in a game {games}")
     return "\n".join(lines)
 
 
-def with_interval(found: Mapping[Any, Any], name: str, digits: int = 2) -> str:
-    """Return a number with its interval, from columns like those of `means`; – where there is none."""
-    mean, low, high = (found[key] for key in (name, f"{name}_low", f"{name}_high"))
-    if pd.isna(mean):
-        return "–"
-    interval = "" if pd.isna(low) else f" ({low:.{digits}f} … {high:.{digits}f})"
-    return f"{mean:.{digits}f}{interval}"
+def _told(found: Mapping[Any, Any], name: str, form: str = ".2f") -> str:
+    """Return a number with its interval, from columns like those of `means`."""
+    return with_interval(found[name], found[f"{name}_low"], found[f"{name}_high"], form)
 
 
 def draw(directory: Path, title: str = "", **question: object) -> Path:
@@ -136,16 +133,16 @@ def printed(rows: pd.DataFrame) -> list[tuple[str, list[list[str]]]]:
     by_robot = [["robot", "swarm", "SUD (pucks)", "SUD (s)", "reward (s)", "reward per second"]]
     for found in means(rows).to_dict("records"):
         robot = f"mean of S{found['swarm']}" if found["robot"] < 0 else str(found["robot"])
-        digits = zip(QUANTITIES, (2, 1, 1, 3), strict=True)
-        by_robot.append([robot, f"S{found['swarm']}", *(with_interval(found, *each) for each in digits)])
+        forms = zip(QUANTITIES, (".2f", ".1f", ".1f", ".3f"), strict=True)
+        by_robot.append([robot, f"S{found['swarm']}", *(_told(found, *each) for each in forms)])
     ranks = [["swarm", "contribution to SUD in", "of robots' means", "within a game"]]
     for found in rank_correlations(rows).to_dict("records"):
-        cells = (with_interval(found, name) for name in ("robots", "games"))
+        cells = (_told(found, name) for name in ("robots", "games"))
         ranks.append([f"S{found['swarm']}", MEASURES[found["measure"]], *cells])
     became = [["robot of", "others", "T(a)", "without", "T(p)", "without", "T(a) against it", "share freed"]]
     for found in assumption(rows).to_dict("records"):
         times = (f"{found[name]:.1f}" for name in ("t_a", "t_a_without", "t_p", "t_p_without", "met"))
-        became.append([f"S{found['swarm']}", found["others"], *times, with_interval(found, "share")])
+        became.append([f"S{found['swarm']}", found["others"], *times, _told(found, "share")])
     interval = "one seed" if seeds == 1 else f"mean of {seeds} seeds (95 % interval)"
     return [
         (f"contribution of each robot, and its own reward: {interval}", by_robot),

@@ -20,6 +20,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from agents.calls import split_outside
+from analysis.printed import span
 from analysis.summaries import summary
 
 _MOST_TICKS = 16
@@ -171,8 +172,13 @@ def scale_from_zero(axes: Axes, values: pd.Series) -> None:
     axes.set_ylim(-0.02 * top, 1.06 * top)
 
 
+def heading(scenario: str, title: str) -> str:
+    """Return what stands above a figure of a scenario: its id and what it is, as far as that is known."""
+    return f"{scenario}: {title}" if title else scenario
+
+
 @contextmanager
-def sheet(heading: str, width: float = 7.0, height: float = 4.9) -> Iterator[Figure]:
+def sheet(title: str, width: float = 7.0, height: float = 4.9) -> Iterator[Figure]:
     """Open a figure with a heading, of a size in inches, in the house's style."""
     with (
         sns.axes_style("whitegrid", rc={"grid.color": "0.9"}),
@@ -180,26 +186,26 @@ def sheet(heading: str, width: float = 7.0, height: float = 4.9) -> Iterator[Fig
         mpl.rc_context({"text.parse_math": False}),  # a user's title may have a dollar in it
     ):
         figure = Figure(figsize=(width, height), layout="constrained")
-        figure.suptitle(fill(heading, width=int(10 * width), break_on_hyphens=False))
+        figure.suptitle(fill(title, width=int(10 * width), break_on_hyphens=False))
         yield figure
 
 
 @contextmanager
-def page(rows: pd.DataFrame, heading: str, width: float = 7.0, look: Look = DETAILED) -> Iterator[Figure]:
+def page(rows: pd.DataFrame, title: str, width: float = 7.0, look: Look = DETAILED) -> Iterator[Figure]:
     """Open a figure with a heading; when the caller has drawn its axes, put the legend below them.
 
     Parameters
     ----------
     rows : pandas.DataFrame
         The rows shown; the legend says how many seeds they have.
-    heading : str
-        Title of the figure, broken into lines where it is long.
+    title : str
+        Heading of the figure, broken into lines where it is long.
     width : float
         Inches.
     look : Look
         The legend explains what is drawn in it.
     """
-    with sheet(heading, width) as figure:
+    with sheet(title, width) as figure:
         yield figure
         legend_below(figure, _seeds(rows, look))
 
@@ -222,5 +228,5 @@ def _seeds(rows: pd.DataFrame, look: Look) -> str:
     low, high = counts.min(), counts.max()
     if high == 1:
         return "one seed"
-    mean = f"mean of {f'{low} to {high}' if low < high else high} seeds"
+    mean = f"mean of {span(low, high)} seeds"
     return f"{mean}, band: its 95 % interval, points: single seeds" if look.detail else mean

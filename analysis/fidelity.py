@@ -8,13 +8,13 @@ import pandas as pd
 from scipy import stats
 
 from agents.errors import InputError
-from analysis.printed import PrintedTable
+from analysis.printed import NONE, PrintedTable, with_interval
 from analysis.published import argos_fixed_policies
+from analysis.statistics import CONFIDENCE
 
 SHARE_TOLERANCE = 0.06
 SCORE_TOLERANCE = 0.2
 PUCK_TOLERANCE = 1.5
-CONFIDENCE = 0.95
 
 _ROW = ["scenario", "n", "swarm"]
 # Means of counts over 10 and 20 seeds fall on the tolerances exactly: rounding must not decide.
@@ -93,10 +93,8 @@ def printed(frame: pd.DataFrame) -> PrintedTable:
     ]
     rows = []
     for row in frame.to_dict("records"):
-        relative = "–" if pd.isna(row["score_relative"]) else f"{100 * row['score_relative']:+.0f} %"
-        interval = (
-            "" if pd.isna(row["score_low"]) else f" ({row['score_low']:+.1f} … {row['score_high']:+.1f})"
-        )
+        relative = NONE if pd.isna(row["score_relative"]) else f"{100 * row['score_relative']:+.0f} %"
+        difference = with_interval(row["score_difference"], row["score_low"], row["score_high"], "+.1f")
         rows.append(
             [
                 str(row["scenario"]),
@@ -104,7 +102,7 @@ def printed(frame: pd.DataFrame) -> PrintedTable:
                 f"S{row['swarm']}",
                 f"{row['score_ours']:.1f}",
                 f"{row['score_theirs']:.1f}",
-                f"{row['score_difference']:+.1f}{interval}",
+                difference,
                 relative,
                 _verdict(row["score_fits"]),
                 f"{row['share_ours']:.3f}",

@@ -19,6 +19,7 @@ from analysis.drawing import (
     draw_curves,
     draw_line,
     form_of_condition,
+    heading,
     legend_below,
     page,
     scale_from_zero,
@@ -52,8 +53,8 @@ def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "", look: Look 
     InputError
         `runs` has no row of the scenario.
     """
-    rows = _of(runs, scenario)
-    with page(rows, _heading(scenario, title), look=look) as figure:
+    rows = of_scenario(runs, scenario)
+    with page(rows, heading(scenario, title), look=look) as figure:
         axes = figure.subplots()
         draw_curves(axes, curves_of(rows, look), "pucks", look)
         axes.set_ylabel("pucks deposited by the swarm")
@@ -79,8 +80,8 @@ def time_shares(runs: pd.DataFrame, scenario: str, title: str = "", look: Look =
     InputError
         `runs` has no row of the scenario.
     """
-    rows = with_time_shares(_of(runs, scenario))
-    with page(rows, _heading(scenario, title), width=11.0, look=look) as figure:
+    rows = with_time_shares(of_scenario(runs, scenario))
+    with page(rows, heading(scenario, title), width=11.0, look=look) as figure:
         panels: Sequence[Axes] = figure.subplots(1, len(TIME_SHARES), sharey=True)
         for axes, kind in zip(panels, TIME_SHARES, strict=True):
             draw_curves(axes, curves_of(rows, look), kind, look)
@@ -124,12 +125,12 @@ def sud_over_n(
     InputError
         `runs` has no row of the scenario, or none of that swarm in it.
     """
-    rows = _of(runs, scenario)
+    rows = of_scenario(runs, scenario)
     swarms = sorted(set(rows["swarm"]))
     if swarm not in swarms:
         raise InputError("swarm", swarm, f"must be one of {', '.join(map(str, swarms))} in {scenario}")
     rows = rows[rows["swarm"] == swarm]
-    with page(rows, _heading(scenario, title), look=look) as figure:
+    with page(rows, heading(scenario, title), look=look) as figure:
         axes = figure.subplots()
         axes.axhline(0, color="0.4", linewidth=1)
         draw_curves(axes, curves_of(rows, look), "sud", look)
@@ -248,12 +249,15 @@ def draw(results_dir: Path, scenario_ids: Sequence[str], titles: Mapping[str, st
     return paths
 
 
-def _of(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
+def of_scenario(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
+    """Return the rows of a scenario.
+
+    Raises
+    ------
+    InputError
+        `runs` has none.
+    """
     rows = runs[runs["scenario"] == scenario]
     if rows.empty:
         raise InputError("scenario", scenario, f"must be one of {', '.join(sorted(set(runs['scenario'])))}")
     return rows
-
-
-def _heading(scenario: str, title: str) -> str:
-    return f"{scenario}: {title}" if title else scenario

@@ -5,12 +5,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Final
 
 from PIL import Image
 
 from agents.errors import InputError
+from agents.files import whole
 from analysis.arena import palette
 
 FORMATS: Final = (".mp4", ".gif")
@@ -44,7 +44,7 @@ def write_film(path: Path, pictures: Iterable[Image.Image], fps: int) -> int:
         nothing is.
     """
     check_film(path)
-    with _whole(path) as part:
+    with _written(path) as part:
         return (_write_mp4 if path.suffix == ".mp4" else _write_gif)(part, iter(pictures), fps)
 
 
@@ -85,7 +85,7 @@ def write_sheet(path: Path, pictures: Sequence[Image.Image]) -> None:
     for k, picture in enumerate(pictures):
         row, column = divmod(k, columns)
         sheet.paste(picture, (column * (width + gap), row * (height + gap)))
-    with _whole(path) as part:
+    with _written(path) as part:
         sheet.save(part, dpi=(_DOTS_PER_INCH, _DOTS_PER_INCH))
 
 
@@ -129,12 +129,10 @@ def _write_gif(path: Path, pictures: Iterator[Image.Image], fps: int) -> int:
 
 
 @contextmanager
-def _whole(path: Path) -> Iterator[Path]:
-    """Give a path to write to, which takes the place of `path` once it is whole."""
+def _written(path: Path) -> Iterator[Path]:
+    """Give a file to write to in place of `path`, as `agents.files.whole` does."""
     try:
-        with TemporaryDirectory(dir=path.parent, prefix=".unfinished-") as unfinished:
-            part = Path(unfinished, path.name)
+        with whole(path) as part:
             yield part
-            part.replace(path)
     except OSError as error:
         raise InputError("out", str(path), "must be a place that can be written") from error

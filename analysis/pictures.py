@@ -1,6 +1,5 @@
 """Figures as PNG and SVG: the same bytes for the same figure, in files written whole or not at all."""
 
-import os
 import warnings
 from io import BytesIO
 from pathlib import Path
@@ -10,6 +9,7 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from agents.errors import InputError
+from agents.files import whole
 
 DOTS_PER_INCH = 150
 FORMATS: Final = ("png", "svg")
@@ -97,22 +97,7 @@ def save(figure: Figure, path: Path) -> None:
     content = encoded(figure, path.suffix.removeprefix(".").lower())
     try:
         path.parent.mkdir(exist_ok=True)
-        write_whole(path, content)
+        with whole(path) as file:
+            file.write_bytes(content)
     except OSError as error:
         raise InputError("figures", str(path), "must be a place that can be written") from error
-
-
-def write_whole(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written; then it is as it was.
-    """
-    part = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        part.write_bytes(content)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)

@@ -7,6 +7,11 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
+from math import isnan
+from typing import Final
+
+NONE: Final = "–"
+"""What stands for a number that is not there."""
 
 # A number, or a mark that stands for one that is not there, with whatever follows: an interval, a unit.
 _NUMBER = re.compile(r"^(–$|[+−-]?[\d.]+(\s|$))")
@@ -62,6 +67,22 @@ class PrintedTable:
             for cell, kind in zip(cells[1:], kinds[1:], strict=True)
         )
         return f"<tr>{first}{''.join(rest)}</tr>"
+
+
+def number(value: float, form: str) -> str:
+    """Return a number in a form as ``.1f``, a dash for NaN."""
+    return NONE if isnan(value) else format(value, form)
+
+
+def with_interval(value: float, low: float, high: float, form: str) -> str:
+    """Return a number and the interval that it lies in, which is left out where it is NaN."""
+    interval = "" if isnan(value) or isnan(low) else f" ({low:{form}} … {high:{form}})"
+    return number(value, form) + interval
+
+
+def span(few: int, many: int) -> str:
+    """Return from how many to how many: ``3 to 20``, or ``20`` where both are the same."""
+    return str(few) if few == many else f"{few} to {many}"
 
 
 def _heading(name: str, kind: str) -> str:

@@ -1,4 +1,4 @@
-"""Reading what games recorded, robot by robot and conflict by conflict: of the wanted runs alone."""
+"""Reading what games recorded, robot by robot and conflict by conflict."""
 
 from collections.abc import Collection, Sequence
 from pathlib import Path
@@ -39,27 +39,31 @@ def recorded_runs(directory: Path, name: str) -> set[str]:
     return set(_read(directory / name, ["run"])["run"])
 
 
-def read_conflicts(directory: Path, runs: Collection[str]) -> pd.DataFrame:
+def read_conflicts(directory: Path, runs: Collection[str] | None = None, seen: bool = False) -> pd.DataFrame:
     """Read rows of `conflicts.parquet`, one for each conflict that a robot began.
 
     Parameters
     ----------
     directory : Path
         The results directory that `kswarms run --record conflicts --out` wrote.
-    runs : collection of str
-        Runs wanted.
+    runs : collection of str, optional
+        Runs wanted; all if not given.
+    seen : bool
+        Whether the robots are read too that each robot saw, the bulk of the file.
 
     Returns
     -------
     pandas.DataFrame
-        The columns `CONFLICTS_COLUMNS`; `start`, `t_a`, `t_p` in s, `x`, `y` in m.
+        The columns `CONFLICTS_COLUMNS`, and `seen` if it is wanted; `start`, `t_a`, `t_p` in s, `x`, `y`
+        in m.
 
     Raises
     ------
     InputError
         The file is missing, cannot be read or lacks a column.
     """
-    return _read(directory / CONFLICTS_FILE, CONFLICTS_COLUMNS, runs)
+    columns = (*CONFLICTS_COLUMNS, "seen") if seen else CONFLICTS_COLUMNS
+    return _read(directory / CONFLICTS_FILE, columns, runs)
 
 
 def read_robots(directory: Path, runs: Collection[str]) -> pd.DataFrame:

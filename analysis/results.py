@@ -32,11 +32,6 @@ POLICIES_FILE = "policies.parquet"
 POLICIES_TEXT = ("run", "scenario", "condition", "action")
 POLICIES_NUMBERS = ("n", "seed", "swarm", "opponent", "share", "attack_share")
 
-CONFLICTS_FILE = "conflicts.parquet"
-
-CONFLICTS_TEXT = ("run", "phase", "action")
-CONFLICTS_NUMBERS = ("robot", "swarm", "opponent", "opponent_swarm", "start", "t_a", "t_p", "active")
-
 # What pandas and Arrow raise on damaged bytes: mostly OSError or ValueError, the others where the
 # description of the columns is damaged.
 _DAMAGE = (OSError, ValueError, LookupError, TypeError, RuntimeError)
@@ -119,28 +114,6 @@ def read_policies(directory: Path) -> pd.DataFrame:
         As for `read_runs`.
     """
     return _read(directory, POLICIES_FILE, POLICIES_TEXT, POLICIES_NUMBERS)
-
-
-def read_conflicts(directory: Path) -> pd.DataFrame:
-    """Read `conflicts.parquet`, one row for each conflict that a robot began.
-
-    Parameters
-    ----------
-    directory : Path
-        The results directory that `kswarms run --record conflicts --out` wrote.
-
-    Returns
-    -------
-    pandas.DataFrame
-        At least one row; the columns `CONFLICTS_TEXT` (str) and `CONFLICTS_NUMBERS` (numbers, none missing;
-        times in seconds, swarms from 1), and whatever other columns the file has.
-
-    Raises
-    ------
-    InputError
-        As for `read_runs`.
-    """
-    return _read(directory, CONFLICTS_FILE, CONFLICTS_TEXT, CONFLICTS_NUMBERS)
 
 
 def _read(directory: Path, name: str, text: Sequence[str], numbers: Sequence[str]) -> pd.DataFrame:

@@ -1,13 +1,10 @@
 """The numbers of a scenario's figure as a table: means over the seeds and intervals, a row for each N."""
 
-from collections.abc import Hashable, Mapping
-
 import pandas as pd
 
-from agents.errors import InputError
 from analysis.drawing import curves_of
-from analysis.figures import TIME_SHARES, quantities, with_time_shares
-from analysis.printed import PrintedTable
+from analysis.figures import TIME_SHARES, of_scenario, quantities, with_time_shares
+from analysis.printed import PrintedTable, span, with_interval
 from analysis.summaries import summary
 
 _UNITS = {"pucks": "pucks deposited by the swarm", "sud": "SUD of S2 (pucks)"}
@@ -35,9 +32,7 @@ def scores(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
     InputError
         `runs` has no row of the scenario.
     """
-    rows = runs[runs["scenario"] == scenario]
-    if rows.empty:
-        raise InputError("scenario", scenario, f"must be one of {', '.join(sorted(set(runs['scenario'])))}")
+    rows = of_scenario(runs, scenario)
     shown = quantities(scenario)
     if shown == ("sud",):
         rows = rows[rows["swarm"] == 2]
@@ -59,20 +54,10 @@ def printed(frame: pd.DataFrame) -> PrintedTable:
     for (quantity, curve), column in frame.groupby(["quantity", "curve"], sort=False):
         header.append(f"{curve}\n{quantity}" if several else str(curve))
         by_density = column.set_index("n").reindex(densities)
-        digits = 1 if quantity in _UNITS else 3
-        columns.append([_cell(row, digits) for row in by_density.to_dict("records")])
+        form = ".1f" if quantity in _UNITS else ".3f"
+        cells = zip(by_density["mean"], by_density["low"], by_density["high"], strict=True)
+        columns.append([with_interval(*cell, form) for cell in cells])
     unit = "share of time in conflict" if several else _UNITS[frame["quantity"].iloc[0]]
     few, many = frame["seeds"].min(), frame["seeds"].max()
-    seeds = (
-        f"mean of {few if few == many else f'{few} to {many}'} seeds (95 % bootstrap interval)"
-        if many > 1
-        else "one seed"
-    )
+    seeds = f"mean of {span(few, many)} seeds (95 % bootstrap interval)" if many > 1 else "one seed"
     return PrintedTable(header, [list(row) for row in zip(*columns, strict=True)], f"{unit}; {seeds}")
-
-
-def _cell(row: Mapping[Hashable, float], digits: int) -> str:
-    if pd.isna(row["mean"]):
-        return "–"
-    interval = "" if pd.isna(row["low"]) else f" ({row['low']:.{digits}f} … {row['high']:.{digits}f})"
-    return f"{row['mean']:.{digits}f}{interval}"

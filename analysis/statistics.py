@@ -275,6 +275,20 @@ def more_seeds(differences: ArrayLike, power: float = 0.8, confidence: float = C
     return more if len(values) + more < _MOST_SEEDS else None
 
 
+def student_reach(deviation: ArrayLike, seeds: ArrayLike) -> Values:
+    """Return half the width of Student's interval of means at the level `CONFIDENCE`, NaN for one seed.
+
+    Parameters
+    ----------
+    deviation : array_like
+        Standard error of each mean.
+    seeds : array_like
+        What each is the mean of.
+    """
+    reach: Values = stats.t.ppf(0.5 + CONFIDENCE / 2, np.asarray(seeds) - 1) * np.asarray(deviation)
+    return reach
+
+
 def expanded(confidence: float, seeds: int) -> float:
     """Return the level at which percentiles of the resampled mean of a few seeds keep a confidence.
 

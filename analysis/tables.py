@@ -5,16 +5,14 @@ own: the mean over the seeds, with the 95 % interval of that mean by Student's t
 and 100 %. A single seed has no interval.
 """
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Sequence
 
 import pandas as pd
-from scipy import stats
 
 from agents.errors import InputError
-from analysis.printed import PrintedTable
+from analysis.printed import PrintedTable, number, span, with_interval
 from analysis.published import learned_percentages
-
-CONFIDENCE = 0.95
+from analysis.statistics import student_reach
 
 _COLUMN = ["scenario", "condition", "swarm", "opponent"]
 _CELL = [*_COLUMN, "n"]
@@ -65,7 +63,7 @@ def learned(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataFrame:
         .reset_index()
         .merge(learned_percentages(), how="left", on=["scenario", "learned", "n"])
     )
-    reach = stats.t.ppf(0.5 + CONFIDENCE / 2, cells["seeds"].to_numpy() - 1) * cells["deviation"]
+    reach = student_reach(cells["deviation"].to_numpy(), cells["seeds"].to_numpy())
     cells = cells.assign(
         low=(cells["measured"] - reach).clip(lower=0),
         high=(cells["measured"] + reach).clip(upper=100),
@@ -110,10 +108,11 @@ def printed(cells: pd.DataFrame) -> PrintedTable:
         by_density = column.set_index("n").reindex(densities)
         if column["published"].notna().any():
             header.append(f"{name}\npublished")
-            columns.append([_number(value) for value in by_density["published"]])
+            columns.append([number(value, ".1f") for value in by_density["published"]])
             errors.append(f"{name} {mean_absolute_error(column):.1f}")
         header.append(f"{name}\nmeasured")
-        columns.append([_measured(cell) for cell in by_density.to_dict("records")])
+        measured = zip(by_density["measured"], by_density["low"], by_density["high"], strict=True)
+        columns.append([with_interval(*cell, ".1f") for cell in measured])
     return PrintedTable(header, [list(row) for row in zip(*columns, strict=True)], _caption(cells, errors))
 
 
@@ -137,18 +136,9 @@ def named_columns(cells: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     return columns
 
 
-def _number(value: float) -> str:
-    return "–" if pd.isna(value) else f"{value:.1f}"
-
-
-def _measured(cell: Mapping[Hashable, float]) -> str:
-    interval = "" if pd.isna(cell["low"]) else f" ({cell['low']:.1f} … {cell['high']:.1f})"
-    return _number(cell["measured"]) + interval
-
-
 def _caption(cells: pd.DataFrame, errors: Sequence[str]) -> str:
     few, many = cells["seeds"].min(), cells["seeds"].max()
-    seeds = f"mean of {few if few == many else f'{few} to {many}'} seeds (95 % interval, Student's t)"
+    seeds = f"mean of {span(few, many)} seeds (95 % interval, Student's t)"
     caption = f"percent of the learning swarm's robots; {seeds if many > 1 else 'one seed'}"
     compared = cells["error"].notna().sum()
     if compared:

@@ -3,7 +3,7 @@
     robots = robot_utilities(conflicts, alpha=1.0, beta=1.0)   # u_i^m, U_i, W_i of every robot
     swarms = swarm_utilities(robots)                           # U_Sk, SUD of every swarm
 
-`conflicts` has the columns of ``conflicts.parquet``: `analysis.results.read_conflicts` reads it, and
+`conflicts` has the columns of ``conflicts.parquet``: `analysis.records.read_conflicts` reads it, and
 ``pandas.DataFrame(model.tables()["conflicts"])`` of a game just played will do; the column ``run`` may be
 missing.
 

@@ -15,7 +15,6 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-import mesa
 import pyarrow.parquet as pq
 import simpy
 from simpy.events import Event, Timeout
@@ -100,7 +99,7 @@ def count_work(plan: Plan, seed: int) -> Work:
     model.play()
     work = _done(model)._replace(timeouts=kinds[Timeout], events=kinds.total())
     played = sum(row["t_a_intra"] + row["t_a_inter"] + row["t_p"] for row in model.results())
-    _forget(model)
+    model.forget()
     measured = plan.n * plan.duration
     if abs(played - measured) > 1e-6 * measured:
         raise WorkError(f"{plan}, seed {seed}: {played} robot-seconds played, not {measured}")
@@ -125,7 +124,7 @@ def time_game(plan: Plan, seed: int, work: Work) -> tuple[float, float]:
     played = time.process_time()
     # Counting what is processed would cost time; what was scheduled says as much, and SimPy counts it anyway.
     done = _done(model)._replace(timeouts=work.timeouts, events=work.events)
-    _forget(model)
+    model.forget()
     if done != work:
         raise WorkError(f"{plan}, seed {seed}: counted {work}, but timed {done}")
     return built - start, played - built
@@ -335,11 +334,6 @@ def _done(model: GameModel) -> Work:
     rows: list[dict[str, Any]] = model.results()
     conflicts = sum(row["conflicts_intra"] + row["conflicts_inter"] for row in rows)
     return Work(0, 0, next(model.env._eid), conflicts, sum(row["pucks"] for row in rows))
-
-
-def _forget(model: GameModel) -> None:
-    # Mesa counts the agents of every model in a table of the class, and so keeps the model alive.
-    mesa.Agent._ids.pop(model, None)
 
 
 def _best(repetitions: int, measure: Callable[[], float]) -> float:

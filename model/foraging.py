@@ -171,6 +171,10 @@ class GameModel(mesa.Model):
         # Mesa counts the agents of every model in a table of the class, and so would keep the model alive.
         mesa.Agent._ids.pop(self, None)
 
+    def forget(self) -> None:
+        """Drop what Mesa keeps of every model in a table of its class, so that this one can be freed."""
+        mesa.Agent._ids.pop(self, None)
+
     def times(self, swarm: int) -> tuple[list[int], int]:
         """Return a swarm's T(a), by the opponent's swarm, and T(p), up to now (robot-periods)."""
         t_a = [0] * len(self.members)

@@ -31,7 +31,7 @@ from scenarios.calibration_games import (
     to_place,
     to_point,
 )
-from scenarios.files import write_json
+from scenarios.files import make_directory, write_json
 
 SPREAD: Final = 0.15
 """Standard deviation of the first generation, as a part of the range searched."""
@@ -188,8 +188,8 @@ def _open(setup: Setup, play: Play, out: Path, fresh: bool) -> Shares:
     """Return the shares that the directory holds, after making sure that it is there and can be written."""
     comparable = setup.model_dump(mode="json", include={"densities", "seeds", "population"})
     comparable["start"] = _start(setup)
+    make_directory(out)
     try:
-        out.mkdir(parents=True, exist_ok=True)
         if fresh:
             for name in (_SHARES, TRACE):
                 (out / name).unlink(missing_ok=True)

@@ -3,11 +3,17 @@
 import difflib
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Final
 
 from agents.errors import InputError
 from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.description import Scenario
 from scenarios.files import read_scenarios
+
+FIRST_SCENARIO: Final = "fig-6.1c"
+"""What is watched if nothing is asked for …"""
+USUAL_N: Final = 20
+"""… and with how many robots, or nearly."""
 
 
 def chosen(ids: Iterable[str]) -> list[Scenario]:

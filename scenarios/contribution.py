@@ -10,7 +10,6 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
-from tempfile import TemporaryDirectory, TemporaryFile
 from typing import Any, Final, Literal
 
 import pyarrow as pa
@@ -18,12 +17,14 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from agents.errors import InputError
+from agents.files import whole
 from agents.learner import Learner
 from agents.policies import Setting, deal, make_policy
 from agents.rewards import WLU, Reward
 from agents.streams import Streams
 from model.game import Game
 from scenarios.choice import words
+from scenarios.files import make_directory
 from scenarios.runner import Outcome, play_all
 from scenarios.runs import Run, digest
 
@@ -263,12 +264,7 @@ def prepare_table(directory: Path) -> None:
     InputError
         If it cannot, or a file of its name is none of ours.
     """
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        with TemporaryFile(dir=directory):
-            pass
-    except OSError as error:
-        raise InputError("out", str(directory), f"must be a writable directory ({error.strerror})") from error
+    make_directory(directory)
     path = directory / FILE
     try:
         ours = not path.exists() or pq.read_schema(path).equals(SCHEMA)
@@ -309,7 +305,6 @@ def write_table(directory: Path, rows: Sequence[Row]) -> Path:
             again = pc.and_(again, pc.equal(earlier[name], rows[0][name]))
         table = pa.concat_tables([earlier.filter(pc.invert(again)), table])
     table = table.sort_by([(name, "ascending") for name in (*_ONE_QUESTION, "seed", "robot")])
-    with TemporaryDirectory(dir=directory, prefix=".unfinished-") as unfinished:
-        pq.write_table(table, Path(unfinished, FILE))
-        Path(unfinished, FILE).replace(path)
+    with whole(path) as file:
+        pq.write_table(table, file)
     return path

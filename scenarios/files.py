@@ -3,8 +3,10 @@
 import json
 import tomllib
 from pathlib import Path
+from tempfile import TemporaryFile
 
 from agents.errors import InputError
+from agents.files import whole
 from scenarios.description import Scenario
 
 
@@ -43,6 +45,22 @@ def _scenario(place: str, content: object) -> Scenario:
         raise InputError(f"{place}: {error.field}", error.value, error.allowed) from None
 
 
+def make_directory(directory: Path) -> None:
+    """Make a directory for results, if need be, and make sure that it can be written to.
+
+    Raises
+    ------
+    InputError
+        If it cannot.
+    """
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        with TemporaryFile(dir=directory):
+            pass
+    except OSError as error:
+        raise InputError("out", str(directory), f"must be a writable directory ({error.strerror})") from error
+
+
 def write_json(path: Path, content: object) -> None:
     """Write a file of JSON, whole or not at all.
 
@@ -51,9 +69,5 @@ def write_json(path: Path, content: object) -> None:
     OSError
         If that fails; then the file is as it was.
     """
-    unfinished = path.with_name(f".unfinished-{path.name}")
-    try:
-        unfinished.write_text(json.dumps(content, indent=1) + "\n")
-        unfinished.replace(path)
-    finally:
-        unfinished.unlink(missing_ok=True)
+    with whole(path) as file:
+        file.write_text(json.dumps(content, indent=1) + "\n")

@@ -157,8 +157,6 @@ def conflicts_of(run: Run) -> list[ConflictAccount]:
     RunError
         If the game fails.
     """
-    from mesa import Agent
-
     from model.foraging import GameModel
 
     model = None
@@ -168,7 +166,8 @@ def conflicts_of(run: Run) -> list[ConflictAccount]:
             model.play()
         return sorted(Accounts(model).take(), key=lambda account: (account.start, account.robot))
     finally:
-        Agent._ids.pop(model, None)  # Mesa's table of the class would keep the model alive
+        if model is not None:
+            model.forget()
 
 
 TOLD: Final = (

@@ -89,9 +89,7 @@ def play(run: Run, record: str = "") -> Outcome:
     RunError
         If the game fails; the message says which.
     """
-    # Here, since both take over a second and only what plays needs them.
-    from mesa import Agent
-
+    # Here, since it takes over a second and only what plays needs it.
     from model.foraging import GameModel
     from model.recording import policy_rows
 
@@ -103,8 +101,8 @@ def play(run: Run, record: str = "") -> Outcome:
             model.play()
             return Outcome(model.results(), policy_rows(model), model.tables())
     finally:
-        # Mesa counts the agents of every model in a table of the class, and so keeps the model alive.
-        Agent._ids.pop(model, None)
+        if model is not None:
+            model.forget()
 
 
 @contextmanager

@@ -21,8 +21,9 @@ from types import TracebackType
 from typing import Any, Final, Self
 
 from agents.errors import InputError
+from agents.files import UNFINISHED
 from scenarios.description import Scenario
-from scenarios.files import write_json
+from scenarios.files import make_directory, write_json
 from scenarios.ledger import FILE, Ledger
 from scenarios.overview import codes
 from scenarios.runner import Failure, Outcome, Result, sweep
@@ -33,7 +34,7 @@ MANIFEST: Final = "manifest.json"
 LOCK: Final = "lock"
 """Name of the file whose lock a study holds."""
 
-UNFINISHED: Final = ".unfinished-tables-"
+_TABLES: Final = f"{UNFINISHED}tables-"
 """How the directory begins that tables are written to before they are whole."""
 
 _ENTROPY: Final = "numpy PCG64(SeedSequence(seed, spawn_key=(robot, purpose))), and nothing else"
@@ -76,8 +77,10 @@ class Study:
         _make(self.directory)
         with self._open as stack:
             stack.enter_context(_locked(self.directory, self._command))
-            for left in self.directory.glob(f"{UNFINISHED}*"):
+            for left in self.directory.glob(f"{_TABLES}*"):
                 shutil.rmtree(left, ignore_errors=True)
+            for left in self.directory.glob(f"{UNFINISHED}*-{MANIFEST}"):
+                left.unlink()
             self._ledger = stack.enter_context(Ledger(self.directory / FILE, new=True))
             self._open = stack.pop_all()
         return self
@@ -178,7 +181,7 @@ class Study:
     def _finish(self, session: int, status: str) -> None:
         from scenarios.tables import export  # here, since pyarrow takes long to import
 
-        with TemporaryDirectory(dir=self.directory, prefix=UNFINISHED) as unfinished:
+        with TemporaryDirectory(dir=self.directory, prefix=_TABLES) as unfinished:
             whole = export(self._ledger, Path(unfinished))
             self.tables = [path.replace(self.directory / path.name) for path in whole]
         self._end_session(session, status)
@@ -237,16 +240,12 @@ def _make(directory: Path) -> None:
     """Make the directory, if need be, and make sure that nothing in it would be lost."""
     from scenarios.tables import SCHEMAS
 
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        if not (directory / FILE).exists():
-            for name in SCHEMAS:
-                if (directory / f"{name}.parquet").exists():
-                    told = f"has a {name}.parquet but no {FILE}; name another"
-                    raise InputError("out", str(directory), told)
-        (directory / LOCK).open("a").close()
-    except OSError as error:
-        raise InputError("out", str(directory), f"must be a writable directory ({error.strerror})") from error
+    make_directory(directory)
+    if not (directory / FILE).exists():
+        for name in SCHEMAS:
+            if (directory / f"{name}.parquet").exists():
+                told = f"has a {name}.parquet but no {FILE}; name another"
+                raise InputError("out", str(directory), told)
 
 
 def _about(command: str) -> dict[str, Any]:

@@ -10,6 +10,7 @@ import pandas as pd
 
 from analysis.drawing import Look
 from analysis.findings import FINDINGS, Finding, judge_all
+from analysis.printed import span
 from analysis.report.coverage import Planned, coverage
 from analysis.report.coverage import printed as printed_coverage
 from analysis.report.page import Chapter, Part, Report, Tabled
@@ -169,7 +170,7 @@ def _summary(results: Results, covered: pd.DataFrame) -> list[str]:
     complete = int((covered["missing"] == "").sum())
     some = int((covered["games"] > 0).sum())
     return [
-        f"{runs['run'].nunique():,} games with {few if few == many else f'{few} to {many}'} seeds at each "
+        f"{runs['run'].nunique():,} games with {span(few, many)} seeds at each "
         f"density. Of {len(covered)} scenarios {complete} are here as planned and {some - complete} in part.",
         "Each figure is shown in the form of the source, then with the 95 % interval of each mean and the "
         "single seeds; its numbers stand below it, and published ones beside them where they are at hand.",

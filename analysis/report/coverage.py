@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from analysis.printed import PrintedTable
+from analysis.printed import PrintedTable, span
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ def _missing(points: pd.DataFrame, planned: Planned) -> str:
     seeds = points.groupby(["condition", "n"])["seed"].nunique()
     if seeds.min() < planned.seeds:
         few, many = seeds.min(), seeds.max()
-        parts.append(f"seeds ({few if few == many else f'{few} to {many}'} of {planned.seeds})")
+        parts.append(f"seeds ({span(few, many)} of {planned.seeds})")
     return "; ".join(parts) or "some conditions at some N"
 
 

@@ -17,7 +17,8 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from agents.errors import InputError
-from analysis.pictures import Picture, drawn, write_whole
+from agents.files import whole
+from analysis.pictures import Picture, drawn
 from analysis.printed import PrintedTable
 
 _MIME: Final = {"png": "image/png", "svg": "image/svg+xml"}
@@ -206,7 +207,8 @@ class Report:
 
 def _write(field: str, path: Path, content: bytes) -> None:
     try:
-        write_whole(path, content)
+        with whole(path) as file:
+            file.write_bytes(content)
     except OSError as error:
         raise InputError(
             field, str(path), f"must be a place that can be written ({error.strerror})"

@@ -10,7 +10,7 @@ import pandas as pd
 
 from analysis import emergence, maps, networks
 from analysis.drawing import Look
-from analysis.printed import PrintedTable
+from analysis.printed import NONE, PrintedTable
 from analysis.records import CONFLICTS_FILE, ROBOTS_FILE, read_conflicts, read_robots, recorded_runs
 from analysis.report.page import Part, Tabled
 
@@ -134,7 +134,7 @@ def _printed(frame: pd.DataFrame) -> PrintedTable:
         "largest": ("largest\ncluster", "{:.1f}"),
     }
     rows = [
-        [form.format(row[name]) if pd.notna(row[name]) else "–" for name, (_, form) in columns.items()]
+        [form.format(row[name]) if pd.notna(row[name]) else NONE for name, (_, form) in columns.items()]
         for row in frame.to_dict("records")
     ]
     caption = (

@@ -8,7 +8,7 @@ import pandas as pd
 
 from agents.errors import InputError
 from analysis import fidelity, figures, scores, tables
-from analysis.drawing import Look
+from analysis.drawing import Look, heading
 from analysis.findings import Verdict
 from analysis.printed import PrintedTable
 from analysis.report.page import Part, Tabled
@@ -40,7 +40,7 @@ def scenario_part(results: Results, scenario: str, title: str, missing: str, tab
     safe : bool
         Whether colours are those that the colour-blind tell apart.
     """
-    part = Part(scenario, f"{scenario}: {title}" if title else scenario)
+    part = Part(scenario, heading(scenario, title))
     if missing:
         part.text.append(f"Missing: {missing}.")
     shown = _SHOWN[figures.quantities(scenario)]
@@ -72,7 +72,7 @@ def _add_learned(part: Part, results: Results, scenario: str, title: str, table:
     published = "; crosses: published" if cells["published"].notna().any() else ""
     part.show(
         f"{scenario}-learned",
-        figures.learned_over_n(cells, f"{scenario}: {title}" if title else scenario, conditions),
+        figures.learned_over_n(cells, heading(scenario, title), conditions),
         "Line chart of the share of robots that learned to attack others, or to flee within their swarm, "
         f"over the number of robots in all; {name} has its numbers.",
         f"What robots learned{published}; {name} has the numbers.",

@@ -9,6 +9,7 @@ from model.parameters import parse_parameters
 from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.choice import chosen
 from scenarios.cli.options import ids
+from scenarios.cli.printing import print_columns
 from scenarios.cli.progress import clock
 from scenarios.cost import cpu_seconds
 from scenarios.description import Condition, Scenario, toml_of
@@ -22,10 +23,7 @@ def list_scenarios() -> None:
     for name, table in TABLES.items():
         rows.append((name, *_size(CATALOGUE[each] for each in table.scenarios), table.title))
     rows.append(("--all", *_size(CATALOGUE.values()), "All scenarios; what they share is played once"))
-    widths = [max(len(row[k]) for row in rows) for k in range(4)]
-    for name, *numbers, title in rows:
-        cells = (cell.rjust(width) for cell, width in zip(numbers, widths[1:], strict=True))
-        typer.echo("  ".join([name.ljust(widths[0]), *cells, title]))
+    print_columns(rows, left=(0, 4))
 
 
 def _size(scenarios: Iterable[Scenario]) -> tuple[str, str, str]:

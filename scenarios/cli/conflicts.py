@@ -7,6 +7,7 @@ import typer
 
 from agents.errors import InputError
 from scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Watched, one_run
+from scenarios.cli.printing import print_columns
 
 
 def conflicts(
@@ -38,6 +39,4 @@ def conflicts(
         for account in conflicts_of(found)
         if (robot is None or account.robot == robot) and first <= account.start - found.game.learning <= last
     ]
-    widths = [max(map(len, column)) for column in zip(TOLD, *rows, strict=True)]
-    for row in (TOLD, *rows):
-        typer.echo("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+    print_columns([TOLD, *rows], left=range(len(TOLD)))

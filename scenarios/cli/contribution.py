@@ -4,20 +4,18 @@ from collections.abc import Generator, Sequence
 from contextlib import closing
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Any, Literal
 
 import typer
 
 from agents.errors import InputError
 from scenarios.choice import chosen
 from scenarios.cli.options import Jobs, check_seed, directory, processes, scenario_ids
+from scenarios.cli.printing import print_table
 from scenarios.cli.progress import tracked
 from scenarios.description import MOST_SEEDS
 from scenarios.runner import Outcome, play_all
 from scenarios.runs import Run
-
-# Of a printed table: as wide as it is, for rich would break the cells in a pipe's 80 columns.
-_ANY_WIDTH: Final = 1000
 
 
 def contribution(
@@ -95,20 +93,11 @@ def _play(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, Outcome], None
 
 def _show(out: Path, scenario: str, title: str, question: dict[str, Any]) -> None:
     """Draw what was found and print it."""
-    from rich.console import Console
-    from rich.table import Table
-
     from analysis.contribution import of_question, read
     from analysis.contribution_shown import draw, printed
 
     named = {name: question[name] for name in ("condition", "n", "absent_from")}
     typer.echo(f"figure: {draw(out, title, scenario=scenario, **named)}")
     rows = of_question(read(out), scenario=scenario, **named)
-    console = Console(width=_ANY_WIDTH, highlight=False)
     for heading, (header, *lines) in printed(rows):
-        table = Table()
-        for name in header:
-            table.add_column(name, justify="right")
-        for cells in lines:
-            table.add_row(*cells)
-        console.print(f"\n{heading}", table, sep="\n")
+        print_table(heading, header, lines)

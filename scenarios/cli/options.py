@@ -8,13 +8,8 @@ import typer
 
 from agents.errors import InputError
 from scenarios.catalogue import CATALOGUE, TABLES
-from scenarios.choice import chosen
+from scenarios.choice import FIRST_SCENARIO, USUAL_N, chosen
 from scenarios.runs import LAST_SEED, Run, digest
-
-FIRST_SCENARIO: Final = "fig-6.1c"
-"""What is watched if nothing is asked for …"""
-USUAL_N: Final = 20
-"""… and with how many robots, or nearly."""
 
 MOST_JOBS: Final = 1024
 """Processes at most: of more, no machine has the memory."""

@@ -13,12 +13,10 @@ from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.choice import chosen, integers, planned, words
 from scenarios.cli.options import Jobs, check_seed, directory, processes
 from scenarios.cli.options import ids as ids_to_complete
+from scenarios.cli.printing import print_table
 from scenarios.cli.progress import KINDS, check_kind, told
 from scenarios.description import Scenario
 from scenarios.runner import RECORDS
-
-# Of a printed table: as wide as it is, for rich would break the cells in a pipe's 80 columns.
-_ANY_WIDTH: Final = 1000
 
 _NEXT: Final = {
     "report": "all results in one HTML file",
@@ -153,18 +151,9 @@ def _play(
 
 
 def _print_table(table_id: str, out: Path) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
     from analysis.results import read_policies
     from analysis.tables import learned, printed
 
     title, scenarios = TABLES[table_id]
     text = printed(learned(read_policies(out), scenarios))
-    table = Table()
-    for heading in text.header:
-        table.add_column(heading, justify="right")
-    for cells in text.rows:
-        table.add_row(*cells)
-    console = Console(width=_ANY_WIDTH, highlight=False)
-    console.print(f"\n{table_id}: {title}", table, text.caption, sep="\n")
+    print_table(f"{table_id}: {title}", text.header, text.rows, text.caption)

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from scenarios.cli.printing import print_columns
 from scenarios.cli.progress import clock
 
 Directory = Annotated[Path, typer.Argument(metavar="DIR", help="What `kswarms run --out` wrote.")]
@@ -20,10 +21,7 @@ def status(directory: Directory) -> None:
         heads = ("scenario", "done", "failed", "missing", "CPU time")
         rows = [(name, *_cells(counts)) for name, counts in by_scenario(ledger).items()]
         rows.append(("runs, each once", *_cells(in_all(ledger))))
-        widths = [max(len(row[k]) for row in (heads, *rows)) for k in range(len(heads))]
-        for row in (heads, *rows):
-            name, *cells = (cell.rjust(width) for cell, width in zip(row, widths, strict=True))
-            typer.echo("  ".join([name.strip().ljust(widths[0]), *cells]))
+        print_columns([heads, *rows], left=(0,))
         typer.echo()
         sessions = ledger.sessions()
         typer.echo(f"sessions: {len(sessions)}, the first of {sessions[0]['started'] if sessions else '–'}")

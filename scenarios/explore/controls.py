@@ -15,10 +15,8 @@ from model.arena import LAYOUTS
 from model.parameters import Parameters, parse_parameters
 from scenarios.catalogue import CATALOGUE
 from scenarios.explore.form import learning_of
-from scenarios.explore.session import Session
+from scenarios.explore.session import Act, Session
 from scenarios.explore.views import colour_of
-
-Act = Callable[[Callable[[], None]], None]
 
 MOST_ROBOTS: Final = 100
 _SLIDERS: Final = {

@@ -12,9 +12,10 @@ from typing import Any, Final
 
 import solara
 
+from scenarios.choice import FIRST_SCENARIO
 from scenarios.explore.controls import Controls
 from scenarios.explore.panels import Panels
-from scenarios.explore.session import SPEEDS, Session
+from scenarios.explore.session import SPEEDS, Act, Session
 from scenarios.explore.views import Json, frame_of, scene_of
 from scenarios.runs import Run
 
@@ -31,7 +32,7 @@ _STYLE: Final = """
 .kswarms-swarm { padding: 4px 0 4px 10px; margin: 4px 0; }
 """
 
-start: str | Run = "fig-6.1c"
+start: str | Run = FIRST_SCENARIO
 """What a new page begins with; the command line sets it."""
 
 
@@ -138,7 +139,7 @@ def let_run(session: Session, beats: Beats, over: threading.Event) -> None:
 
 
 @solara.component
-def _ArenaView(session: Session, beats: Beats, act: Callable[[Callable[[], None]], None]) -> None:
+def _ArenaView(session: Session, beats: Beats, act: Act) -> None:
     number = beats.frame.value
     player = session.player
     scene = solara.use_memo(lambda: scene_of(player), [player])
@@ -158,9 +159,7 @@ def _Message(session: Session, beat: solara.Reactive[int]) -> None:
 
 
 @solara.component
-def _Transport(
-    session: Session, beat: solara.Reactive[int], act: Callable[[Callable[[], None]], None]
-) -> None:
+def _Transport(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     """Show the buttons below the arena."""
     beat.get()
     player = session.player

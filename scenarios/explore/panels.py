@@ -1,17 +1,15 @@
 """The panels beside the arena: curves, the robot chosen, conflicts."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Final
 
 import solara
 
 from scenarios.explore.robot import RobotView
-from scenarios.explore.session import Session
+from scenarios.explore.session import Act, Session
 from scenarios.explore.views import Json, curves_of
 from scenarios.replay import TOLD, Arm, ConflictAccount, number, told
-
-Act = Callable[[Callable[[], None]], None]
 
 _CONFLICTS_SHOWN: Final = 60
 

@@ -11,7 +11,6 @@ from threading import RLock
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from mesa import Agent
 
 from agents.fleet import ACTION, Floats, Integers
 from agents.theory.swarms import swarm_utility_difference
@@ -128,9 +127,9 @@ class Player:
         self.history = [self._sample()]
 
     def close(self) -> None:
-        """Let the game go; Mesa's table of the class would keep it alive."""
+        """Let the game go."""
         with self._lock:
-            Agent._ids.pop(self.model, None)
+            self.model.forget()
 
     # Where it stands.
 

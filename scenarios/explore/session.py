@@ -5,22 +5,24 @@ A control that says something impossible leaves the game as it is and says why i
 
 import math
 import time as clock
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, Final
 
 from agents.errors import InputError
 from agents.learner import Learner
-from scenarios.choice import chosen, integers
+from scenarios.choice import USUAL_N, chosen, integers
 from scenarios.description import Condition
 from scenarios.explore.form import Form, SwarmForm, with_learning, with_parameter
 from scenarios.explore.player import Player
 from scenarios.runner import naming
 from scenarios.runs import Run
 
+Act = Callable[[Callable[[], None]], None]
+"""Does something to a session, and has the page shown anew."""
+
 SPEEDS: Final = (1, 2, 5, 10, 20, 50, 100)
 """Seconds of the game in a second of the clock on the wall."""
-_USUAL_N: Final = 20
 _HASTE: Final = 0.2
 """For how long a game may be played at full speed until it is shown again (s)."""
 _STRIDE: Final = 5.0
@@ -87,7 +89,7 @@ class Session:
             self.form = Form.of_game(start.game, start.seed)
         else:
             self._open(start)
-            self.form = self._form(_USUAL_N, 0)
+            self.form = self._form(USUAL_N, 0)
         game = self.form.game()
         with naming(f"the game of {self.source}"):
             self.player = Player(game, self.form.seed)

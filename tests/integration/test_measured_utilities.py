@@ -12,7 +12,7 @@ from agents.theory.swarms import (
     sum_of_differences,
     swarm_utility_difference,
 )
-from analysis.results import read_conflicts
+from analysis.records import read_conflicts
 from analysis.utilities import robot_utilities, swarm_utilities
 from model.foraging import GameModel
 from model.game import Game, Swarm
@@ -108,7 +108,7 @@ def test_a_file_of_conflicts_gives_what_the_games_themselves_give(tmp_path: Path
     outcomes = [play(run, "conflicts") for run in runs]
     with Study(tmp_path) as study:
         assert len(list(study.play(study.plan([crowd]), records=["conflicts"]))) == 2
-    robots = robot_utilities(read_conflicts(tmp_path))
+    robots = robot_utilities(read_conflicts(tmp_path, seen=True))
     assert len(robots) == 10 + 16
     for run, outcome in zip(runs, outcomes, strict=True):
         of_file = robots[robots["run"] == run.digest].drop(columns="run").reset_index(drop=True)
