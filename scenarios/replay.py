@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from agents.bandit import Bandit
 from agents.learner import Learner
 from agents.selection import FORGOTTEN, UCB
+from scenarios.runner import name_of, naming
 from scenarios.runs import Run
 
 if TYPE_CHECKING:
@@ -116,8 +117,8 @@ class Accounts:
             robot.number: robot.policy for robot in model.robots if isinstance(robot.policy, Learner)
         }
         self._bandits = {
-            (robot, opponent): Bandit(len(learner.actions))
-            for robot, learner in self._learners.items()
+            (number, opponent): Bandit(len(learner.actions))
+            for number, learner in self._learners.items()
             for opponent in learner.bandits
         }
 
@@ -150,15 +151,23 @@ def conflicts_of(run: Run) -> list[ConflictAccount]:
     ----------
     run : Run
         What is played.
+
+    Raises
+    ------
+    RunError
+        If the game fails.
     """
     from model.foraging import GameModel
 
-    model = GameModel(run.game, seed=run.seed, record="conflicts")
+    model = None
     try:
-        model.play()
+        with naming(name_of(run)):
+            model = GameModel(run.game, seed=run.seed, record="conflicts")
+            model.play()
         return sorted(Accounts(model).take(), key=lambda account: (account.start, account.robot))
     finally:
-        model.forget()
+        if model is not None:
+            model.forget()
 
 
 TOLD: Final = (
@@ -192,7 +201,7 @@ def told(account: ConflictAccount, begin: float) -> list[str]:
         f"{account.start - begin:.1f}",
         f"{account.robot} of S{account.swarm}",
         f"{account.opponent} of S{account.opponent_swarm}",
-        f"{account.x:.2f}, {account.y:.2f}",
+        f"{account.x:z.2f}, {account.y:z.2f}",  # z: no −0.00
         ", ".join(f"{arm.action} {number(arm.q)} ({arm.n:.4g})" for arm in account.known) or "–",
         account.action,
         f"{account.t_a:.1f}",
@@ -206,4 +215,4 @@ def told(account: ConflictAccount, begin: float) -> list[str]:
 
 def number(value: float) -> str:
     """Return a number with three decimals, a dash for none."""
-    return "–" if math.isnan(value) else f"{value:.3f}"
+    return "–" if math.isnan(value) else f"{value:z.3f}"

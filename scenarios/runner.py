@@ -3,9 +3,9 @@
 import time
 import traceback
 from collections import deque
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
-from contextlib import closing
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from queue import SimpleQueue
 from typing import Any, Final
@@ -95,16 +95,34 @@ def play(run: Run, record: str = "") -> Outcome:
 
     model = None
     try:
-        require_unchanged(run)
-        model = GameModel(run.game, seed=run.seed, record=record)
-        model.play()
-        return Outcome(model.results(), policy_rows(model), model.tables())
-    except (Exception, SystemExit) as error:  # which code of a user's own may raise
-        message = f"{name_of(run)} failed: {_line(error)}"
-        raise RunError(message, traceback.format_exc()) from error
+        with naming(name_of(run)):
+            require_unchanged(run)
+            model = GameModel(run.game, seed=run.seed, record=record)
+            model.play()
+            return Outcome(model.results(), policy_rows(model), model.tables())
     finally:
         if model is not None:
             model.forget()
+
+
+@contextmanager
+def naming(played: str) -> Iterator[None]:
+    """Say of whatever goes wrong what was played: a policy of a user's own may fail in any way.
+
+    Parameters
+    ----------
+    played : str
+        What is played, as `name_of` says it.
+
+    Raises
+    ------
+    RunError
+        If anything goes wrong.
+    """
+    try:
+        yield
+    except (Exception, SystemExit) as error:  # which code of a user's own may raise
+        raise RunError(f"{played} failed: {_line(error)}", traceback.format_exc()) from error
 
 
 def attempt(run: Run, record: str, code: str) -> tuple[Outcome | Failure, float]:

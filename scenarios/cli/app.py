@@ -5,8 +5,8 @@ that needs it.
 """
 
 import sys
-from collections.abc import Sequence
-from typing import Annotated, Final
+from collections.abc import Callable, Sequence
+from typing import Annotated, Any, Final
 
 import typer
 
@@ -26,11 +26,11 @@ from scenarios.runs import package_version
 INTERRUPTED: Final = 130
 
 app = typer.Typer(
-    add_completion=False,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     help="Competing swarms of foraging robots: play the scenarios of the catalogue and see who wins.",
-    epilog="Example: kswarms run fig-6.1a --densities 6,30 --seeds 3",
+    epilog="Example: kswarms run fig-6.1a --densities 6,30 --seeds 3\n\n"
+    "Exit status: 0 done, 1 failed, 2 bad input, 130 interrupted.",
 )
 
 
@@ -91,16 +91,33 @@ def _without_command(
         typer.echo(context.get_help())
 
 
-app.command("list", epilog="Example: kswarms list")(list_scenarios)
-app.command(epilog="Example: kswarms show fig-6.1c")(show)
-app.command(epilog="Example: kswarms run fig-6.1a fig-6.1c --densities 6,30,50 --seeds 5")(run)
-app.command(epilog="Example: kswarms status results")(status)
-app.command(epilog="Example: kswarms replay results 0c2b1f7a9d3e4f56")(replay)
-app.command(epilog="Example: kswarms calibrate --free friction,gamma --densities 16,30,50 --seeds 2")(
-    calibrate
-)
-app.command(epilog="Example: kswarms explore fig-6.4b")(explore)
-app.command(epilog="Example: kswarms film fig-6.1c --n 50 --to 120 --out fight.gif")(film)
-app.command(epilog="Example: kswarms conflicts fig-6.4b --n 6 --robot 3 --from 0")(conflicts)
-app.command(epilog="Example: kswarms contribution fig-6.4b --n 16 --robots S2 --seeds 5")(contribution)
-app.command(epilog="Example: kswarms report results --out report.html")(report)
+_COMMANDS: Final[dict[Callable[..., Any], tuple[str, str]]] = {
+    list_scenarios: ("List scenarios and tables, with what they take.", "list"),
+    show: ("Print a scenario as TOML, ready to edit.", "show fig-6.1c"),
+    run: (
+        "Play scenarios; write tables and figures.",
+        "run fig-6.1a fig-6.1c --densities 6,30,50 --seeds 5",
+    ),
+    status: ("Tell what is done, what failed and why.", "status results"),
+    replay: ("Play one run again, and compare.", "replay results 0c2b1f7a9d3e4f56"),
+    calibrate: (
+        "Fit the free parameters to Table 6.1.",
+        "calibrate --free friction,gamma --densities 16,30,50 --seeds 2",
+    ),
+    explore: ("Open a page in which games are watched.", "explore fig-6.4b"),
+    film: ("Film a game, or a stretch of it.", "film fig-6.1c --n 50 --to 120 --out fight.gif"),
+    conflicts: ("Tell a game conflict by conflict.", "conflicts fig-6.4b --n 6 --robot 3 --from 0"),
+    contribution: (
+        "Measure what robots contributed to their swarm.",
+        "contribution fig-6.4b --n 16 --robots S2 --seeds 5",
+    ),
+    report: ("Write all results into one HTML file.", "report results --out report.html"),
+}
+"""What each command is in the list of all, and how it is used."""
+
+for _command, (_short, _example) in _COMMANDS.items():
+    app.command(
+        _example.split()[0],
+        short_help=_short,
+        epilog=f"Example: kswarms {_example}",
+    )(_command)

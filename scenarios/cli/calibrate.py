@@ -10,21 +10,33 @@ import typer
 
 from scenarios.choice import integers, words
 from scenarios.cli.options import Jobs, directory, processes
+from scenarios.cli.progress import tracked
 from scenarios.runner import play_all
 from scenarios.runs import Run
 
 
 def calibrate(
     free: Annotated[
-        str | None, typer.Option(metavar="NAME,...", help="Parameters to fit, two at least. [default: all]")
+        str | None,
+        typer.Option(
+            metavar="NAME,...",
+            help="Parameters to fit, two at least, of those of docs/calibration.md. [default: all]",
+        ),
     ] = None,
     densities: Annotated[
-        str | None, typer.Option(metavar="N,N,...", help="Rows of Table 6.1 to fit. [default: all]")
+        str | None,
+        typer.Option(
+            metavar="N,N,...", help="Rows of Table 6.1 to fit: 6,10,16,20,26,30,36,40,46,50. [default: all]"
+        ),
     ] = None,
-    seeds: Annotated[int, typer.Option(help="Games for each cell of the table and point.")] = 4,
-    generations: Annotated[int, typer.Option(help="Generations of the search.")] = 25,
-    population: Annotated[int, typer.Option(help="Points in a generation; 0: as many as is usual.")] = 0,
-    validation_seeds: Annotated[int, typer.Option(help="Games for each cell in the validation.")] = 20,
+    seeds: Annotated[int, typer.Option(help="Games for each cell of the table and point, at least 1.")] = 4,
+    generations: Annotated[int, typer.Option(help="Generations of the search, at least 1.")] = 25,
+    population: Annotated[
+        int, typer.Option(help="Points in a generation, at least 4; 0: as many as is usual.")
+    ] = 0,
+    validation_seeds: Annotated[
+        int, typer.Option(help="Games for each cell in the validation, at least 5.")
+    ] = 20,
     jobs: Jobs = None,
     out: Annotated[
         Path, typer.Option(parser=directory, metavar="DIR", help="What is kept, and gone on from.")
@@ -58,10 +70,6 @@ def calibrate(
 
 def _learned(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, float], None, None]:
     """Play runs with one learning swarm and yield each with the share of it that learned to attack."""
-    from rich.console import Console
-    from rich.progress import track
-
-    console = Console(stderr=True)
     with closing(play_all(runs, jobs)) as played:
-        for run, outcome in track(played, "learning", total=len(runs), console=console, transient=True):
+        for run, outcome in tracked(played, "learning", len(runs)):
             yield run, outcome.policies[0]["attack_share"]

@@ -8,6 +8,7 @@ import typer
 from model.parameters import parse_parameters
 from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.choice import chosen
+from scenarios.cli.options import ids
 from scenarios.cli.printing import print_columns
 from scenarios.cli.progress import clock
 from scenarios.cost import cpu_seconds
@@ -43,7 +44,12 @@ def _size(scenarios: Iterable[Scenario]) -> tuple[str, str, str]:
 
 
 def show(
-    wanted: Annotated[str, typer.Argument(metavar="ID", help="A scenario or table of the list, or my.toml.")],
+    wanted: Annotated[
+        str,
+        typer.Argument(
+            metavar="ID", help="A scenario or table of the list, or my.toml.", autocompletion=ids
+        ),
+    ],
 ) -> None:
     """Print a scenario as TOML, or those that a table is made of; edited, `kswarms run my.toml` plays it."""
     scenarios = chosen([wanted])

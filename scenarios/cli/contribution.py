@@ -10,25 +10,38 @@ import typer
 
 from agents.errors import InputError
 from scenarios.choice import chosen
-from scenarios.cli.options import Jobs, check_seed, directory, processes
+from scenarios.cli.options import Jobs, check_seed, directory, processes, scenario_ids
 from scenarios.cli.printing import print_table
+from scenarios.cli.progress import tracked
 from scenarios.description import MOST_SEEDS
 from scenarios.runner import Outcome, play_all
 from scenarios.runs import Run
 
 
 def contribution(
-    wanted: Annotated[str, typer.Argument(metavar="ID", help="A scenario of the list.")],
+    wanted: Annotated[
+        str,
+        typer.Argument(
+            metavar="ID",
+            help="A scenario of the list, or my.toml with one.",
+            autocompletion=scenario_ids,
+        ),
+    ],
     condition: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Which curve of it, if it has several.")
+        str | None,
+        typer.Option(
+            metavar="NAME", help="Which curve of it, as `kswarms show` names it, if it has several."
+        ),
     ] = None,
-    n: Annotated[int, typer.Option(help="Robots in all.")] = 26,
+    n: Annotated[int, typer.Option(help="Robots in all, as the shares of its swarms allow.")] = 26,
     robots: Annotated[
         str | None,
         typer.Option(metavar="LIST", help="Robots, from 0, and swarms, as 3,7 or S2. [default: all]"),
     ] = None,
-    seeds: Annotated[int, typer.Option(help="Games with all robots, each also played without each.")] = 20,
-    first_seed: Annotated[int, typer.Option(help="Seed of the first of these games.")] = 0,
+    seeds: Annotated[
+        int, typer.Option(help="Games with all robots, at least 1, each also played without each.")
+    ] = 20,
+    first_seed: Annotated[int, typer.Option(help="Seed of the first of these games, at least 0.")] = 0,
     absent_from: Annotated[
         Literal["learning", "game"],
         typer.Option(help="Whether they are absent from the learning too, or from the measured game alone."),
@@ -72,13 +85,10 @@ def contribution(
 
 
 def _play(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, Outcome], None, None]:
-    from rich.console import Console
-    from rich.progress import track
-
     from scenarios.contribution import RECORD
 
     with closing(play_all(runs, jobs, RECORD)) as played:
-        yield from track(played, "playing", total=len(runs), console=Console(stderr=True))
+        yield from tracked(played, "playing", len(runs))
 
 
 def _show(out: Path, scenario: str, title: str, question: dict[str, Any]) -> None:

@@ -12,7 +12,9 @@ from scenarios.cli.options import RunDigest, Watched, asked
 def explore(
     what: Watched = None,
     run: RunDigest = "",
-    port: Annotated[int, typer.Option(help="Port of this machine; 0 for any that is free.")] = 8765,
+    port: Annotated[
+        int, typer.Option(help="Port of this machine, 1 to 65535; 0 for any that is free.")
+    ] = 8765,
     no_browser: Annotated[
         bool, typer.Option("--no-browser", help="Only print the address, open no browser.")
     ] = False,

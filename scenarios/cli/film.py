@@ -9,6 +9,8 @@ import typer
 
 from agents.errors import InputError
 from scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Watched, one_run
+from scenarios.cli.progress import tracked
+from scenarios.runner import name_of, naming
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -33,11 +35,14 @@ def film(
     end: Annotated[
         float | None, typer.Option("--to", help="Last instant (s). [default: the end of the game]")
     ] = None,
-    speed: Annotated[float, typer.Option(help="Seconds of the game in a second of the film.")] = 10.0,
-    fps: Annotated[int, typer.Option(help="Pictures a second.")] = 20,
-    size: Annotated[int, typer.Option(help="Width of a picture (pixels).")] = 720,
+    speed: Annotated[
+        float, typer.Option(help="Seconds of the game in a second of the film, above 0.")
+    ] = 10.0,
+    fps: Annotated[int, typer.Option(help="Pictures a second, 1 to 60.")] = 20,
+    size: Annotated[int, typer.Option(help="Width of a picture (pixels), 64 to 4096.")] = 720,
     sheet: Annotated[
-        int | None, typer.Option(metavar="K", help="Write a contact sheet of K instants instead, a PNG.")
+        int | None,
+        typer.Option(metavar="K", help="Write a contact sheet of K instants, 1 to 100, instead: a PNG."),
     ] = None,
     out: Annotated[
         Path | None,
@@ -76,9 +81,10 @@ def film(
         instants = [begin + (end - begin) * (k / (sheet - 1) if sheet > 1 else 1.0) for k in range(sheet)]
     if not out.parent.is_dir():
         raise InputError("out", str(out), "must be in a directory that is there")
-    player = Player(game, found.seed)
+    with naming(name_of(found)):
+        player = Player(game, found.seed)
     try:
-        pictures = _pictures(player, instants, size)
+        pictures = _pictures(player, instants, size, name_of(found))
         if sheet is None:
             write_film(out, pictures, fps)
         else:
@@ -93,11 +99,8 @@ def _check(field: str, value: object, allowed: bool, rule: str) -> None:
         raise InputError(field, value, rule)
 
 
-def _pictures(player: "Player", instants: list[float], size: int) -> Iterator["Image"]:
+def _pictures(player: "Player", instants: list[float], size: int, played: str) -> Iterator["Image"]:
     """Play to each instant and paint it; the end of the game is the last, if it comes before."""
-    from rich.console import Console
-    from rich.progress import track
-
     from analysis.arena import ArenaPainter, Ground
 
     arena = player.model.arena
@@ -106,16 +109,15 @@ def _pictures(player: "Player", instants: list[float], size: int) -> Iterator["I
         player.game.body_preset.radius,
     )
     painter = ArenaPainter(ground, size)
-    if instants[0] > player.time:
-        player.seek(instants[0])
-    for instant in track(instants, "filming", console=Console(stderr=True), transient=True):
-        player.seek(instant)
+    for instant in tracked(instants, "filming", len(instants)):
+        with naming(played):
+            player.seek(instant)
         yield _paint(painter, player.picture())
         if player.ended:
             break
 
 
 def _paint(painter: "ArenaPainter", picture: "Picture") -> "Image":
-    time, positions, heading, swarm, in_action, carrying, pucks = picture
+    time, _, positions, heading, swarm, in_action, carrying, pucks = picture
     title = f"t = {time:.1f} s" if time >= 0 else f"learning, {-time:.1f} s to the game"
     return painter.paint(title, pucks, positions, heading, swarm, in_action, carrying)

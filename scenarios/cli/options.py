@@ -7,13 +7,16 @@ from typing import Annotated, Final
 import typer
 
 from agents.errors import InputError
+from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.choice import FIRST_SCENARIO, USUAL_N, chosen
 from scenarios.runs import LAST_SEED, Run, digest
 
 MOST_JOBS: Final = 1024
 """Processes at most: of more, no machine has the memory."""
 
-Jobs = Annotated[int | None, typer.Option(help="Processes that play. [default: one for each CPU]")]
+Jobs = Annotated[
+    int | None, typer.Option(help="Processes that play, at least 1. [default: one for each CPU]")
+]
 
 
 def processes(jobs: int | None) -> int:
@@ -31,6 +34,18 @@ def processes(jobs: int | None) -> int:
     return jobs
 
 
+def ids(incomplete: str) -> list[tuple[str, str]]:
+    """Return the scenarios and tables whose ids begin so, each with its title: what the shell completes."""
+    return [
+        (name, entry.title) for name, entry in (CATALOGUE | TABLES).items() if name.startswith(incomplete)
+    ]
+
+
+def scenario_ids(incomplete: str) -> list[tuple[str, str]]:
+    """Return `ids` without those of tables."""
+    return [(name, title) for name, title in ids(incomplete) if name in CATALOGUE]
+
+
 def directory(text: str) -> Path:
     """Read the path of a directory.
 
@@ -45,7 +60,13 @@ def directory(text: str) -> Path:
 
 
 Watched = Annotated[
-    str | None, typer.Argument(metavar="[ID|DIR]", help="A scenario; with --run, a directory of results.")
+    str | None,
+    typer.Argument(
+        metavar="ID|DIR",
+        help="A scenario or table of the list, or my.toml; with --run, a directory of results. "
+        f"[default: {FIRST_SCENARIO}]",
+        autocompletion=ids,
+    ),
 ]
 RunDigest = Annotated[
     str, typer.Option(metavar="DIGEST", help="A run of DIR, played again: the column `run` of its tables.")
@@ -64,16 +85,24 @@ def asked(what: str | None, run: str) -> str | Run:
         return what or FIRST_SCENARIO
     if what is None:
         raise InputError("run", run, "needs the directory of results that has it")
-    from scenarios.ledger import find_run
+    from scenarios.recorded import recorded_run
 
-    return find_run(Path(what), run)
+    return recorded_run(Path(what), run)
 
 
 ConditionName = Annotated[
-    str | None, typer.Option("--condition", help="Curve of the scenario. [default: its first]")
+    str | None,
+    typer.Option(
+        "--condition",
+        metavar="NAME",
+        help="Curve of the scenario, as `kswarms show` names it. [default: its first]",
+    ),
 ]
-Robots = Annotated[int | None, typer.Option("--n", help="Robots in all. [default: near 20]")]
-Seed = Annotated[int | None, typer.Option("--seed", help="Seed of the game. [default: 0]")]
+Robots = Annotated[
+    int | None,
+    typer.Option("--n", help="Robots in all, as the shares of its swarms allow. [default: near 20]"),
+]
+Seed = Annotated[int | None, typer.Option("--seed", help="Seed of the game, at least 0. [default: 0]")]
 
 
 def check_seed(field: str, seed: int) -> None:

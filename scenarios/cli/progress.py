@@ -1,10 +1,10 @@
-"""How far a sweep is: a bar for people, lines of JSON for programs, or nothing."""
+"""How far long work is: a bar for people, of a sweep also lines of JSON for programs, or nothing."""
 
 import json
 import sys
 import time
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Final
+from typing import Final, TypeVar
 
 import typer
 
@@ -13,6 +13,8 @@ from scenarios.runner import Failure, Result
 from scenarios.runs import Run
 
 KINDS: Final = ("bar", "json", "none")
+
+_Step = TypeVar("_Step")
 
 _LINE_EVERY: Final = 1.0
 """Time between two lines of JSON at least (s)."""
@@ -49,7 +51,9 @@ class Count:
     def left(self) -> float:
         """Time left, if what is left goes as fast as what is done (s)."""
         passed = time.monotonic() - self._started
-        return passed * (self.work - self.worked) / self.worked if self.worked > 0 else float("inf")
+        # No less than none: the parts of a sum, added in another order, may exceed it by a rounding error.
+        rest = max(0.0, self.work - self.worked)
+        return passed * rest / self.worked if self.worked > 0 else float("inf")
 
 
 def told(played: Iterable[Result], runs: Sequence[Run], kind: str) -> Iterator[Count]:
@@ -133,6 +137,27 @@ def _bar(ended: Iterator[Run], count: Count) -> Iterator[Count]:
                 left=clock(count.left),
             )
             yield count
+
+
+def tracked(steps: Iterable[_Step], doing: str, total: int) -> Iterable[_Step]:
+    """Yield steps, and show a bar of them on standard error meanwhile, if that is a terminal.
+
+    Parameters
+    ----------
+    steps : iterable
+        What is done, step by step.
+    doing : str
+        What that is, in a word.
+    total : int
+        How many there are.
+    """
+    from rich.console import Console
+    from rich.progress import track
+
+    console = Console(stderr=True)
+    return track(
+        steps, doing, total=total, console=console, transient=True, disable=not console.is_terminal
+    )
 
 
 def clock(seconds: float) -> str:

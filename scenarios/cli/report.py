@@ -8,6 +8,7 @@ import typer
 
 from agents.errors import InputError
 from scenarios.catalogue import CATALOGUE, TABLES
+from scenarios.cli.progress import tracked
 
 if TYPE_CHECKING:
     from model.arena import Arena
@@ -79,7 +80,4 @@ def _arena(scenario: str, condition: str, n: int, seed: int) -> "Arena | None":
 
 
 def _progress(steps: Sequence[_Step]) -> Iterable[_Step]:
-    from rich.console import Console
-    from rich.progress import track
-
-    return track(steps, "reporting", console=Console(stderr=True), transient=True)
+    return tracked(steps, "reporting", len(steps))

@@ -12,6 +12,7 @@ from agents.errors import InputError
 from scenarios.catalogue import CATALOGUE, TABLES
 from scenarios.choice import chosen, integers, planned, words
 from scenarios.cli.options import Jobs, check_seed, directory, processes
+from scenarios.cli.options import ids as ids_to_complete
 from scenarios.cli.printing import print_table
 from scenarios.cli.progress import KINDS, check_kind, told
 from scenarios.description import Scenario
@@ -29,22 +30,30 @@ def run(
     ids: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="ID...", help="Scenarios or tables of the list, or files of your own: my.toml."
+            metavar="ID",
+            help="Scenarios or tables of the list, or files of your own: my.toml.",
+            autocompletion=ids_to_complete,
         ),
     ] = None,
     everything: Annotated[
         bool, typer.Option("--all", help="All scenarios, each with those --densities that suit it.")
     ] = False,
     densities: Annotated[
-        str | None, typer.Option(metavar="N,N,...", help="Robots in all. [default: the scenario's own]")
+        str | None,
+        typer.Option(
+            metavar="N,N,...", help="Robots in all, as the shares of its swarms allow. [default: its own]"
+        ),
     ] = None,
     seeds: Annotated[
-        int | None, typer.Option(help="Games for each density. [default: the scenario's own]")
+        int | None, typer.Option(help="Games for each density, at least 1. [default: its own]")
     ] = None,
-    first_seed: Annotated[int, typer.Option(help="Seed of the first of these games.")] = 0,
+    first_seed: Annotated[int, typer.Option(help="Seed of the first of these games, at least 0.")] = 0,
     jobs: Jobs = None,
     scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Play on the Dask cluster of this scheduler.")
+        str | None,
+        typer.Option(
+            metavar="ADDRESS", help="Play on the Dask cluster of this scheduler, as tcp://host:8786."
+        ),
     ] = None,
     out: Annotated[
         Path,

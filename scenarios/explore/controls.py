@@ -54,6 +54,12 @@ def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:
         on_value=lambda n: change(n=n),
     )
     solara.InputInt("Seed", form.seed, on_value=lambda seed: change(seed=seed))
+    if form.absent:
+        solara.InputText(
+            "Absent robots" + (" (they learn)" if form.absent_from == "game" else ""),
+            ", ".join(map(str, form.absent)),
+            on_value=lambda text: act(lambda: session.change_absent(text)),
+        )
     for k in range(len(form.swarms)):
         _swarm(session, k, act)
     with solara.Row(gap="6px"):

@@ -1,6 +1,6 @@
 """What the controls of the page say: a game in the making, from which one that can be played is built."""
 
-from typing import Any, Final, NamedTuple, Self
+from typing import Any, Final, Literal, NamedTuple, Self
 
 from agents.actions import Action
 from agents.calls import parse_call
@@ -35,6 +35,8 @@ class Form(NamedTuple):
         As in `scenarios.description.Condition`.
     puck_limit, supply : int
         Likewise; 0 for no limit.
+    absent, absent_from
+        As in `model.game.Game`.
     """
 
     swarms: tuple[SwarmForm, ...]
@@ -49,6 +51,8 @@ class Form(NamedTuple):
     puck_limit: int = 0
     supply: int = 0
     multiple_of: int | None = None
+    absent: tuple[int, ...] = ()
+    absent_from: Literal["learning", "game"] = "learning"
 
     @classmethod
     def of_condition(cls, condition: Condition, n: int, seed: int) -> Self:
@@ -77,6 +81,8 @@ class Form(NamedTuple):
             duration=game.duration,
             puck_limit=game.puck_limit or 0,
             supply=game.supply or 0,
+            absent=game.absent,
+            absent_from=game.absent_from,
         )
 
     def condition(self) -> Condition:
@@ -104,7 +110,8 @@ class Form(NamedTuple):
         """
         if isinstance(self.seed, bool) or not isinstance(self.seed, int) or self.seed < 0:
             raise InputError("seed", self.seed, "must be a whole number ≥ 0")
-        return self.condition().game(self.n)
+        game = self.condition().game(self.n)
+        return game.replace(absent=self.absent, absent_from=self.absent_from) if self.absent else game
 
     def with_swarm(self, k: int, **changes: Any) -> Self:
         """Return the form with some controls of a swarm (from 0) changed."""

@@ -90,6 +90,13 @@ def Page() -> None:  # components are written like classes, as solara has it
             Panels(session, beats.panels, act)
 
 
+@solara.component
+def Layout(children: list[Any]) -> None:
+    """Show the controls beside the page, or on a button where there is no room; solara asks for the name."""
+    # None leaves it to the browser; True, solara's default, would hide the arena of a narrow window.
+    solara.AppLayout(children=children, sidebar_open=None)
+
+
 def _run(session: Session, beats: Beats) -> Callable[[], None]:
     """Start the thread that lets the game run; return what ends it."""
     over = threading.Event()
@@ -161,7 +168,7 @@ def _Transport(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     def button(label: str, icon: str, action: Callable[[], None], **rest: Any) -> None:
         solara.Button(label, icon_name=icon, on_click=lambda: act(action), small=True, **rest)
 
-    with solara.Row(gap="6px", style={"flex-wrap": "wrap", "align-items": "center"}):
+    with solara.Row(gap="6px", style={"flex-wrap": "wrap", "align-items": "center", "row-gap": "6px"}):
         button(
             "Pause" if runs else "Play", "mdi-pause" if runs else "mdi-play", session.play, color="primary"
         )

@@ -6,10 +6,10 @@ from typing import Final
 
 import solara
 
-from scenarios.explore.robot import RobotView, look_into
+from scenarios.explore.robot import RobotView
 from scenarios.explore.session import Act, Session
 from scenarios.explore.views import Json, curves_of
-from scenarios.replay import TOLD, Arm, number, told
+from scenarios.replay import TOLD, Arm, ConflictAccount, number, told
 
 _CONFLICTS_SHOWN: Final = 60
 
@@ -60,12 +60,15 @@ def _chooser(session: Session, act: Act) -> None:
 def _Robot(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     beat.get()
     _chooser(session, act)
-    view = look_into(session.player.model, session.chosen)
+    view = session.player.look_into(session.chosen)
+    if view is None:
+        solara.Text(f"Robot {session.chosen} is absent.")
+        return
     _Table(header=["", ""], rows=_facts(view))
     solara.Text("Sensors: free distance (m), active ones bold", classes=["kswarms-heading"])
     _Table(
         header=[f"{round(math.degrees(sensor.angle))}°" for sensor in view.sensors],
-        rows=[[f"{'*' if sensor.active else ''}{sensor.free:.2f}" for sensor in view.sensors]],
+        rows=[[f"{'*' if sensor.active else ''}{sensor.free:z.2f}" for sensor in view.sensors]],
     )
     for opponent, arms in view.bandits.items():
         whom = "its own swarm" if opponent == view.swarm else f"S{opponent}"
@@ -108,4 +111,24 @@ def _Conflicts(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     if not accounts:
         solara.Text("No conflict has ended yet.")
         return
-    _Table(header=TOLD, rows=[told(account, player.begin) for account in accounts])
+    _Table(header=_HEADER, rows=[_conflict_row(account, player.begin) for account in accounts])
+
+
+_HEADER: Final = (
+    *("t (s)", "who →\nmet", "where\n(m)", "known:\nQ (N)", "chose\nR (s)"),
+    *("Q\nafter", "T(a)\n(s)", "T(p)\n(s)", "n′", "saw"),
+)
+
+
+def _conflict_row(account: ConflictAccount, begin: float) -> list[str]:
+    """Return the cells of `told`, in lines so short that what matters most fits beside the arena."""
+    cell = dict(zip(TOLD, told(account, begin), strict=True))
+    return [
+        cell["t (s)"],
+        f"{cell['who']} →\n{cell['met']}",
+        cell["where (m)"].replace(", ", "\n"),
+        cell["known: Q (N)"].replace(", ", "\n"),
+        f"{cell['chose']}\n{cell['R']}",
+        *(cell[name] for name in ("Q after", "T(a)", "T(p)", "n′")),
+        cell["saw"].replace(", ", "\n"),
+    ]

@@ -17,6 +17,7 @@ from agents.theory.swarms import swarm_utility_difference
 from model.foraging import GameModel
 from model.game import Game
 from model.recording import policy_rows
+from scenarios.explore.robot import RobotView, look_into, row_of
 from scenarios.replay import Accounts, ConflictAccount
 
 MOST_SAMPLES: Final = 400
@@ -34,6 +35,8 @@ class Picture(NamedTuple):
     ----------
     time : float
         Since the measured game began; negative while the learners learn (s).
+    robots : tuple of int, length n
+        Numbers of those who are there, ascending.
     positions : ndarray of float64, shape (n, 2)
         (m)
     heading : ndarray of float64, shape (n,)
@@ -47,6 +50,7 @@ class Picture(NamedTuple):
     """
 
     time: float
+    robots: tuple[int, ...]
     positions: Floats
     heading: Floats
     swarm: Integers
@@ -152,6 +156,7 @@ class Player:
             robots = fleet.robots
             return Picture(
                 self.time,
+                tuple(robot.number for robot in self.model.robots),
                 fleet.positions.copy(),
                 robots["heading"].copy(),
                 robots["swarm"].copy(),
@@ -159,6 +164,11 @@ class Player:
                 robots["carrying"] > 0,
                 tuple(self.model.pucks),
             )
+
+    def look_into(self, robot: int) -> RobotView | None:
+        """Return what can be seen of a robot now, by its number; None if it is absent."""
+        with self._lock:
+            return look_into(self.model, robot)
 
     # Moving on and back.
 
@@ -183,14 +193,14 @@ class Player:
             self._play_to(target)
 
     def to_next_conflict(self, robot: int) -> None:
-        """Play on until a robot begins a conflict, or to the end."""
+        """Play on until a robot begins a conflict, or leaves, or to the end."""
         with self._lock:
             begun = self._begun(robot)
-            while not self.ended:
+            while begun is not None and not self.ended:
                 self._play_to(self._steps + 1)
                 # Fewer than before where the measured game began meanwhile, which counts anew.
                 before, begun = begun, self._begun(robot)
-                if begun > before:
+                if begun is not None and begun > before:
                     break
 
     def conflicts_of(self, robot: int | None, most: int) -> list[ConflictAccount]:
@@ -204,8 +214,9 @@ class Player:
                     found.append(account)
         return found
 
-    def _begun(self, robot: int) -> int:
-        return sum(self.model.robots[robot].conflicts)
+    def _begun(self, robot: int) -> int | None:
+        row = row_of(self.model, robot)
+        return None if row is None else sum(self.model.robots[row].conflicts)
 
     def _play_to(self, step: int) -> None:
         while self._steps < step and not self.ended:

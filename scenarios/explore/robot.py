@@ -1,6 +1,8 @@
 """A robot looked into: what it senses, what it is doing, what it has learned."""
 
 import math
+from bisect import bisect_left
+from operator import attrgetter
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -53,7 +55,7 @@ class RobotView(NamedTuple):
     doing : str
         In words.
     opponent : str
-        The robot met last, empty before the first conflict.
+        The robot met last, empty before the first conflict, and if that robot has left.
     carrying : bool
     pucks : int
         Deposited in this phase.
@@ -89,19 +91,28 @@ class RobotView(NamedTuple):
     bandits: dict[int, tuple[Arm, ...]]
 
 
-def look_into(model: GameModel, index: int) -> RobotView:
-    """Return what can be seen of a robot now."""
+def row_of(model: GameModel, number: int) -> int | None:
+    """Return the row of a robot, by its number; None if it is absent."""
+    row = bisect_left(model.robots, number, key=attrgetter("number"))
+    return row if row < len(model.robots) and model.robots[row].number == number else None
+
+
+def look_into(model: GameModel, number: int) -> RobotView | None:
+    """Return what can be seen of a robot now, by its number; None if it is absent."""
+    index = row_of(model, number)
+    if index is None:
+        return None
     robot = model.robots[index]
     seconds = model.habits.seconds
     t_a, t_p = robot.times()
     met = model.fleet.opponent[index]
     learner = robot.policy if isinstance(robot.policy, Learner) else None
     return RobotView(
-        index,
+        number,
         robot.swarm + 1,
         robot.policy_name,
         _DOING[model.fleet.phase[index]],
-        f"robot {met} of S{model.fleet.swarm[met] + 1}" if met >= 0 else "",
+        f"robot {model.robots[met].number} of S{model.fleet.swarm[met] + 1}" if met >= 0 else "",
         robot.carrying,
         robot.pucks,
         tuple(seconds(periods) for periods in t_a),
@@ -119,7 +130,7 @@ def _sensors(model: GameModel, index: int) -> tuple[Sensor, ...]:
     reach = body.sensor_range
     row = model.fleet.robots[index]
     free = np.empty(SENSORS)
-    others = np.arange(model.game.size)
+    others = np.arange(len(model.robots))
     sense(
         index,
         row["forward_x"],

@@ -11,10 +11,11 @@ from typing import Any, Final
 
 from agents.errors import InputError
 from agents.learner import Learner
-from scenarios.choice import USUAL_N, chosen
+from scenarios.choice import USUAL_N, chosen, integers
 from scenarios.description import Condition
 from scenarios.explore.form import Form, SwarmForm, with_learning, with_parameter
 from scenarios.explore.player import Player
+from scenarios.runner import naming
 from scenarios.runs import Run
 
 Act = Callable[[Callable[[], None]], None]
@@ -59,7 +60,7 @@ class Session:
     goal : float, optional
         Instant to which the game is played as fast as can be (s, as `Player.time`).
     chosen : int
-        Robot that is looked into.
+        Number of the robot that is looked into; it may be absent.
     show_sectors, show_sensors : bool
         Whether the sectors in which robots ahead start a conflict are drawn, and the chosen robot's sensors.
 
@@ -67,6 +68,8 @@ class Session:
     ------
     InputError
         If there is no such scenario or run.
+    RunError
+        If its game fails before it has begun.
     """
 
     def __init__(self, start: str | Run) -> None:
@@ -87,7 +90,9 @@ class Session:
         else:
             self._open(start)
             self.form = self._form(USUAL_N, 0)
-        self.player = Player(self.form.game(), self.form.seed)
+        game = self.form.game()
+        with naming(f"the game of {self.source}"):
+            self.player = Player(game, self.form.seed)
         self.chosen = self._first_learner()
 
     def close(self) -> None:
@@ -163,6 +168,11 @@ class Session:
         form = self.form._replace(swarms=kept + added, multiple_of=None)
         self.change(form._replace(n=_suitable(form.n, _step(form))))
 
+    def change_absent(self, text: str) -> None:
+        """Have robots be absent: their numbers, separated by commas; an empty text has all of them back."""
+        with self._told():
+            self.change(self.form._replace(absent=integers("absent", text or None)))
+
     def choose(self, robot: int) -> None:
         """Look into a robot."""
         self.chosen = min(max(0, robot), self.player.game.size - 1)
@@ -178,7 +188,8 @@ class Session:
     def _first_learner(self) -> int:
         """Return the first robot that learns, which has most to show; the first of all if none does."""
         robots = self.player.model.robots
-        return next((robot.index for robot in robots if isinstance(robot.policy, Learner)), 0)
+        learners = (robot.number for robot in robots if isinstance(robot.policy, Learner))
+        return next(learners, robots[0].number)
 
     @contextmanager
     def _told(self) -> Iterator[None]:

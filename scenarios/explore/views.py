@@ -5,7 +5,6 @@ from typing import Any, Final
 
 from analysis.arena import SWARM_COLOURS
 from scenarios.explore.player import Player, Sample
-from scenarios.explore.robot import look_into
 
 Json = dict[str, Any]
 
@@ -28,7 +27,6 @@ def scene_of(player: Player) -> Json:
         "radius": body.radius,
         "conflictReach": body.radius + body.sensing_scale * parameters.conflict_distance,
         "frontHalfAngle": parameters.front_half_angle,
-        "swarm": list(model.fleet.swarm),
         "colours": [colour_of(k) for k in range(len(game.swarms))],
     }
 
@@ -36,13 +34,15 @@ def scene_of(player: Player) -> Json:
 def frame_of(player: Player, number: int, chosen: int, sectors: bool, sensors: bool) -> Json:
     """Return what changes: positions to 0.1 mm, headings to 0.001 rad."""
     picture = player.picture()
-    ring = [list(sensor) for sensor in look_into(player.model, chosen).sensors] if sensors else None
+    view = player.look_into(chosen)
     return {
         "number": number,
         "time": round(picture.time, 3),
         "ended": player.ended,
         "pucks": picture.pucks,
         "supply": player.model.supply,
+        "robots": picture.robots,
+        "swarm": picture.swarm.tolist(),
         "x": picture.positions[:, 0].round(4).tolist(),
         "y": picture.positions[:, 1].round(4).tolist(),
         "heading": picture.heading.round(3).tolist(),
@@ -50,11 +50,13 @@ def frame_of(player: Player, number: int, chosen: int, sectors: bool, sensors: b
         "puck": picture.carrying.astype(int).tolist(),
         "chosen": chosen,
         "sectors": sectors,
-        "sensors": ring,
+        "sensors": [list(sensor) for sensor in view.sensors] if view and sensors else None,
     }
 
 
 _DASHES: Final = ("solid", "dashed", "dotted")
+_SHORTEST_AXIS: Final = 10.0
+"""Of time, in a chart (s)."""
 
 
 def curves_of(history: Sequence[Sample]) -> dict[str, Json]:
@@ -66,6 +68,7 @@ def curves_of(history: Sequence[Sample]) -> dict[str, Json]:
     if history[-1].time > 0:
         history = [sample for sample in history if sample.time >= 0]
     times = [sample.time for sample in history]
+    began, now = times[0], times[-1]
 
     def lines(what: str, columns: Iterable[Sequence[float]], dash: str = "solid") -> list[Json]:
         return [
@@ -74,26 +77,31 @@ def curves_of(history: Sequence[Sample]) -> dict[str, Json]:
         ]
 
     charts = {
-        "Pucks": _chart(lines("", (sample.pucks for sample in history))),
-        "SUD (pucks)": _chart(lines("", (sample.sud for sample in history))),
+        "Pucks": _chart(lines("", (sample.pucks for sample in history)), began, now),
+        "SUD (pucks)": _chart(lines("", (sample.sud for sample in history)), began, now),
         "Share of time in conflict": _chart(
             lines(" inter", (sample.inter for sample in history))
             + lines(" intra", (sample.intra for sample in history), "dotted"),
+            began,
+            now,
             most=1.0,
         ),
     }
-    learned = [
-        _line(
-            f"S{own} against S{other}" if own != other else f"S{own} within",
-            own - 1,
-            [sample.time for sample in everything],
-            [sample.fights[own, other] for sample in everything],
-            _DASHES[number % len(_DASHES)],
+    learned = []
+    for number, (own, other) in enumerate(everything[0].fights):
+        known = [sample for sample in everything if (own, other) in sample.fights]  # not if all have left
+        learned.append(
+            _line(
+                f"S{own} against S{other}" if own != other else f"S{own} within",
+                own - 1,
+                [sample.time for sample in known],
+                [sample.fights[own, other] for sample in known],
+                _DASHES[number % len(_DASHES)],
+            )
         )
-        for number, (own, other) in enumerate(history[0].fights)
-    ]
     if learned:
-        charts["Share of learners whose best action is to fight"] = _chart(learned, most=1.0)
+        heading = "Share of learners whose best action is to fight"
+        charts[heading] = _chart(learned, everything[0].time, now, most=1.0)
     return charts
 
 
@@ -109,14 +117,16 @@ def _line(name: str, swarm: int, times: Sequence[float], values: Sequence[float]
     }
 
 
-def _chart(lines: list[Json], most: float | None = None) -> Json:
+def _chart(lines: list[Json], began: float, now: float, most: float | None = None) -> Json:
+    # Of one instant alone, or of none, ECharts would make an axis of its own.
     return {
         "animation": False,
-        "grid": {"left": 48, "right": 16, "top": 34, "bottom": 36},
+        "grid": {"left": 48, "right": 28, "top": 34, "bottom": 36},
         "legend": {"top": 0, "itemWidth": 28, "type": "scroll"},
         "tooltip": {"trigger": "axis"},
         "xAxis": {"type": "value", "name": "t (s)", "nameLocation": "middle", "nameGap": 22}
-        | {"min": "dataMin", "max": "dataMax"},
-        "yAxis": {"type": "value"} | ({"max": most, "min": 0} if most else {}),
+        | {"min": began, "max": max(now, began + _SHORTEST_AXIS), "axisLabel": {"hideOverlap": True}},
+        # Pucks are whole.
+        "yAxis": {"type": "value"} | ({"max": most, "min": 0} if most else {"minInterval": 1}),
         "series": lines,
     }

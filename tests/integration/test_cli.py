@@ -80,11 +80,16 @@ def test_show_of_a_table_prints_the_scenarios_that_it_tabulates(
 def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["--version"]) == 0
     assert capsys.readouterr().out.startswith("kswarms 0.")
-    for words in ([], ["list"], ["show"], ["run"], ["status"], ["replay"]):
+    assert invoke([]) == 0
+    text = capsys.readouterr().out
+    assert "Exit status: 0 done, 1 failed, 2 bad input, 130 interrupted." in text
+    listed = text.split("Commands:")[1].split("Example:")[0].splitlines()
+    assert all(line.endswith(".") and not line.endswith("...") for line in listed if line.strip())
+    commands = [line.split()[0] for line in listed if line.strip()]
+    assert {"list", "show", "run", "film", "explore", "contribution", "report"} < set(commands)
+    for words in ([], *([command] for command in commands)):
         assert invoke([*words, "--help"]) == 0
         assert f"Example: kswarms {' '.join(words)}" in capsys.readouterr().out
-    assert invoke([]) == 0
-    assert "Commands:" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -131,7 +136,8 @@ def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
         ("status nowhere", "results='nowhere': must be a directory with a ledger.sqlite of kswarms"),
         ("replay . 0123", "results='.': must be a directory with a ledger.sqlite of kswarms"),
         ("show", "Missing argument"),
-        ("play", "No such command"),
+        ("play", "No such command 'play'. Did you mean 'replay'?"),
+        ("xyz", "No such command 'xyz'."),
     ],
 )
 def test_bad_input_is_refused_in_one_line_and_nothing_is_written(

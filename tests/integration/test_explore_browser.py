@@ -8,10 +8,14 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import pyarrow.parquet as pq
 import pytest
+
+from scenarios.cli import invoke
 
 pytest.importorskip("solara", reason="needs the extra `explore`")
 webdriver = pytest.importorskip("selenium.webdriver", reason="needs selenium, of the extra `test`")
@@ -31,14 +35,14 @@ PATIENCE = 40.0
 """For anything the page does (s): other programs may use the machine."""
 
 
-@pytest.fixture(scope="module")
-def address() -> Iterator[str]:
-    """Start the command and return the address that it prints."""
+@contextmanager
+def served(*arguments: str) -> Iterator[str]:
+    """Start the command and give the address that it prints."""
     code = "from scenarios.cli import main; main()"
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path)}
     command = [sys.executable, "-W", "error::DeprecationWarning:scenarios", "-c", code]
     server = subprocess.Popen(
-        [*command, "explore", "fig-6.4b", "--no-browser", "--port", "0"],
+        [*command, "explore", *arguments, "--no-browser", "--port", "0"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -55,6 +59,12 @@ def address() -> Iterator[str]:
         errors = server.communicate(timeout=PATIENCE)[1]
     assert server.returncode == 130
     assert errors == "kswarms: interrupted\n"
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    with served("fig-6.4b") as address:
+        yield address
 
 
 class Browser:
@@ -103,6 +113,17 @@ class Browser:
     def time(self) -> str:
         return self.text("[data-test=time]")
 
+    def on_top(self, element: Any) -> bool:
+        """Return whether nothing else is over an element."""
+        return bool(
+            self.driver.execute_script(
+                "const box = arguments[0].getBoundingClientRect();"
+                "const [x, y] = [box.x + box.width / 2, box.y + Math.min(100, box.height / 2)];"
+                "return document.elementFromPoint(x, y) === arguments[0]",
+                element,
+            )
+        )
+
     def frames(self) -> int:
         return int(self.driver.execute_script("return window.kswarmsFrames"))
 
@@ -113,8 +134,16 @@ class Browser:
             time.sleep(0.05)
 
     def complaints(self) -> list[str]:
-        """Return what the console has of errors."""
-        return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] == "SEVERE"]
+        """Return what the console has of errors and warnings."""
+        entries = [
+            entry["message"]
+            for entry in self.driver.get_log("browser")
+            if entry["level"] in ("SEVERE", "WARNING")
+        ]
+        # One is none of ours: solara's own navigator.vue says `modules.export` for `module.exports`.
+        navigator = [entry for entry in entries if "Failed to evaluate Vue script and find module" in entry]
+        assert len(navigator) <= 1
+        return [entry for entry in entries if entry not in navigator]
 
     def requests(self) -> list[str]:
         """Return the addresses that the page asked for, over HTTP and otherwise."""
@@ -132,7 +161,7 @@ class Browser:
 def browse(address: str) -> Iterator[Callable[..., Browser]]:
     opened: list[Browser] = []
 
-    def browse(size: tuple[int, int] = (1360, 950)) -> Browser:
+    def browse(size: tuple[int, int] = (1360, 950), address: str = address) -> Browser:
         opened.append(Browser(address, size))
         return opened[-1]
 
@@ -144,6 +173,7 @@ def browse(address: str) -> Iterator[Callable[..., Browser]]:
 def test_the_page_plays_changes_and_shows_a_learner(browse: Callable[..., Browser], address: str) -> None:
     browser = browse()
     assert browser.time() == "learning, 3000.0 s to the game"
+    assert browser.on_top(browser.all("label", "Robots N")[0])
     shown = "return [...document.querySelectorAll('.kswarms-policy input')].map((field) => field.value)"
     assert set(browser.driver.execute_script(shown)) == {"attack", "inter-learner"}  # no slider changed them
 
@@ -185,10 +215,45 @@ def test_the_page_plays_changes_and_shows_a_learner(browse: Callable[..., Browse
 
 def test_a_mistake_is_told_in_the_page(browse: Callable[..., Browser]) -> None:
     browser = browse()
-    field = next(f for f in browser.all("input") if f.get_attribute("value") == "inter-learner")
+    field = next(f for f in browser.all("input") if f.get_attribute("value") == "attack")
     field.send_keys("x\n")
-    browser.wait(lambda: browser.all(".v-alert", "policy='inter-learnerx': must be one of avoid"))
+    browser.wait(lambda: browser.all(".v-alert", "policy='attackx': must be one of avoid"))
     assert browser.complaints() == []
+
+
+def test_a_run_is_watched_by_its_name_without_the_robot_that_is_absent(
+    browse: Callable[..., Browser], tmp_path: Path
+) -> None:
+    asked = f"contribution fig-6.4b --n 6 --robots 3 --seeds 1 --first-seed 5 --jobs 1 --out {tmp_path}"
+    assert invoke(asked.split()) == 0
+    (row,) = pq.read_table(tmp_path / "contribution.parquet").to_pylist()
+    with served("--run", row["run_without"], str(tmp_path)) as address:
+        browser = browse((1400, 900), address)
+        values = [field.get_attribute("value") for field in browser.all("input")]
+        assert f"run {row['run_without']}" in values
+        assert values[values.index("5") + 1] == "3"  # the seed, and who is absent
+        browser.click(".v-tab", "robot")
+        browser.wait(lambda: browser.text(".kswarms-table td", " of S") == "4 of S2, inter-learner")
+        chooser = next(field for field in browser.all("input") if field.get_attribute("value") == "4")
+        chooser.send_keys(webdriver.Keys.BACKSPACE + "3\n")
+        browser.wait(lambda: browser.all(".kswarms-page span", "Robot 3 is absent."))
+        chooser.send_keys(webdriver.Keys.BACKSPACE + "4\n")
+        browser.click("button", "skip learning")
+        browser.wait(lambda: browser.time().startswith("t ="))
+
+        # Beside the arena there is room for who, where, what was known, what was chosen and what it earned.
+        browser.click(".v-tab", "conflicts")
+        browser.wait(lambda: browser.all(".kswarms-table th", "chose"))
+        browser.wait(lambda: browser.all(".kswarms-table td", "fight"))
+        seen = browser.driver.execute_script(
+            "const edge = document.querySelector('.kswarms-scroll').getBoundingClientRect().right;"
+            "return [...document.querySelectorAll('.kswarms-table th')]"
+            ".filter((cell) => cell.getBoundingClientRect().right <= edge).map((cell) => cell.innerText)"
+        )
+        assert [text.replace("\n", " ") for text in seen][:5] == [
+            *("t (s)", "who → met", "where (m)", "known: Q (N)", "chose R (s)"),
+        ]
+        assert browser.complaints() == []
 
 
 def test_a_narrow_window_has_everything_below_each_other(browse: Callable[..., Browser]) -> None:
@@ -201,4 +266,7 @@ def test_a_narrow_window_has_everything_below_each_other(browse: Callable[..., B
     assert farthest <= width
     canvas = browser.all("canvas")[0]
     assert 0.8 * width < canvas.size["width"] <= width
+    assert browser.on_top(canvas)  # not the controls
+    browser.click("button[class*=nav-icon]", "")
+    browser.wait(lambda: not browser.on_top(canvas))
     assert browser.all(".v-tab")[0].location["y"] > canvas.location["y"] + canvas.size["height"]

@@ -17,14 +17,15 @@ import ipyvuetify  # noqa: E402  # which comes with solara
 
 from agents.errors import InputError  # noqa: E402
 from agents.selection import UCB  # noqa: E402
+from scenarios.catalogue import CATALOGUE  # noqa: E402
 from scenarios.explore import page  # noqa: E402
 from scenarios.explore.session import Session  # noqa: E402
+from scenarios.runs import Run, digest  # noqa: E402
 
 
 @solara.component
 def _App() -> None:  # noqa: N802  # a component
-    with solara.AppLayout():
-        page.Page()
+    page.Layout(children=[page.Page()])
 
 
 class Shown:
@@ -84,7 +85,7 @@ def show(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str], Shown]]:
     shown: list[Shown] = []
     monkeypatch.setattr(page, "_GIVE_UP", 0.02)  # there is no browser that would draw
 
-    def render(start: str) -> Shown:
+    def render(start: str | Run) -> Shown:
         session = Session(start)
         monkeypatch.setattr(page, "Session", lambda _: session)
         shown.append(Shown(session))
@@ -215,6 +216,23 @@ def test_every_control_changes_the_game(show: Callable[[str], Shown]) -> None:
     assert session.player.game.swarms[1].policy == "avoid"
 
 
+def test_who_is_absent_is_told_and_can_come_back(show: Callable[[str | Run], Shown]) -> None:
+    game = CATALOGUE["fig-6.4b"].game("", 6).replace(absent=(0, 3), absent_from="game")
+    shown = show(Run(digest(game, 2), game, 2, (("fig-6.4b", ""),)))
+    session = shown.session
+    assert shown.find(ipyvuetify.TextField, "Absent robots (they learn)").v_model == "0, 3"
+    shown.open(1)
+    shown.write("Robot, 0 to 5", 3)
+    assert shown.tables()[0].rows[0] == ["robot", "3 of S2, inter-learner"]
+    shown.click("Skip learning")
+    _wait(lambda: "Robot 3 is absent." in shown.texts())
+    _wait(lambda: shown.arena().frame["robots"] == (1, 2, 4, 5))
+    _wait(lambda: "Skip learning" not in shown.texts())
+    shown.write("Absent robots", "")
+    assert session.player.game.absent == ()
+    _wait(lambda: "Absent robots" not in shown.texts())
+
+
 def test_the_world_can_be_changed_by_sliders_and_in_words(show: Callable[[str], Shown]) -> None:
     shown = show("fig-6.1c")
     session = shown.session
@@ -275,8 +293,9 @@ def test_conflicts_are_listed_with_what_was_known(show: Callable[[str], Shown]) 
     shown.session.player.advance(60.0)
     shown.click("Step")
     own = shown.tables()[0].rows
-    assert {row[1] for row in own} == {"10 of S2"}
-    assert any(row[4].startswith("flight ") for row in own)
+    assert {row[1].split(" →")[0] for row in own} == {"10 of S2"}
+    assert any(row[3].startswith("flight ") for row in own)
+    assert {row[4].split("\n")[0] for row in own} == {"flight", "fight"}
     shown.find(ipyvuetify.Checkbox, "Those of all robots").v_model = True
     assert len({row[1] for row in shown.tables()[0].rows}) > 1
 

@@ -3,12 +3,19 @@
 import sys
 from pathlib import Path
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from PIL import Image
 
+from agents.errors import InputError
+from scenarios.catalogue import CATALOGUE
 from scenarios.cli import invoke
+from scenarios.contribution import SCHEMA
 from scenarios.ledger import find_run
+from scenarios.recorded import recorded_run
 from scenarios.replay import TOLD, conflicts_of
+from scenarios.runs import digest
 
 
 @pytest.fixture(autouse=True)
@@ -19,8 +26,6 @@ def _in_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 def _recorded(scenario: str = "fig-6.1c") -> str:
     """Play one run into ``results`` and return its digest."""
     assert invoke(f"run {scenario} --densities 6 --seeds 1 --first-seed 3 --jobs 1 --no-figures".split()) == 0
-    import pyarrow.parquet as pq
-
     return str(pq.read_table("results/runs.parquet")["run"][0])
 
 
@@ -77,6 +82,85 @@ def test_conflicts_may_begin_with_an_instant(capsys: pytest.CaptureFixture[str])
     assert invoke(["conflicts", "fig-6.1c", "--n", "6", "--from", "300"]) == 0
     lines = capsys.readouterr().out.splitlines()[1:]
     assert min(float(line.split()[0]) for line in lines) >= 300
+
+
+LATE = """
+class Late:
+    def __init__(self, setting):
+        self.action, self.met = setting.actions[0], 0
+    def choose(self, opponent):
+        self.met += 1
+        if self.met > 20:
+            raise ZeroDivisionError("met\\ntoo many")
+        return self.action
+"""
+"""A policy that fails at a late conflict, when the pictures of a film have begun."""
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "film mine.toml --size 64 --out a.gif",
+        "film mine.toml --size 64 --out a.mp4",
+        "film mine.toml --size 64 --sheet 2 --out a.png",
+        "conflicts mine.toml",
+    ],
+)
+def test_a_policy_that_fails_is_told_in_a_line_after_its_trace_and_nothing_is_written(
+    command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if "mp4" in command:
+        pytest.importorskip("imageio_ffmpeg", reason="needs the extra `explore`")
+    Path("late.py").write_text(LATE)
+    Path("mine.toml").write_text(
+        'id = "mine"\ntitle = "Late"\ndensities = [6]\n[[conditions]]\n'
+        'swarms = [{ policy = "avoid" }, { policy = "late.py:Late" }]\n'
+    )
+    assert invoke(command.split()) == 1
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    trace, last = printed.err.splitlines()[:-1], printed.err.splitlines()[-1]
+    assert last == (
+        "kswarms: run scenario='mine' condition='' n=6 seed=0 failed: ZeroDivisionError: met too many"
+    )
+    assert trace[0] == "Traceback (most recent call last):"
+    assert any(line.endswith("in choose") and "late.py" in line for line in trace)
+    assert sorted(path.name for path in Path().iterdir() if path.is_file()) == ["late.py", "mine.toml"]
+    assert [path.name for path in Path().iterdir() if path.is_dir()] in ([], ["__pycache__"])
+
+
+@pytest.mark.parametrize("absent_from", ["learning", "game"])
+def test_a_game_without_a_robot_is_filmed_and_told_again(
+    absent_from: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked = f"contribution fig-6.1c --n 6 --robots 2 --seeds 1 --first-seed 3 --absent-from {absent_from}"
+    assert invoke([*asked.split(), "--jobs", "1"]) == 0
+    (row,) = pq.read_table("results/contribution.parquet").to_pylist()
+    capsys.readouterr()
+    whole, without = (recorded_run(Path("results"), row[name]) for name in ("run", "run_without"))
+    assert (whole.seed, whole.game.absent) == (3, ())
+    assert (without.seed, without.game.absent, without.labels) == (3, (2,), (("fig-6.1c", ""),))
+    assert _film(f"--run {without.digest} results --to 1 --size 64 --out a.gif") == 0
+    assert invoke(["conflicts", "--run", without.digest, "results"]) == 0
+    told = capsys.readouterr().out.splitlines()[2:]
+    assert {line.split()[1] for line in told} == set("01345")
+
+
+def test_a_run_that_was_compared_may_be_of_a_scenario_that_is_not_at_hand() -> None:
+    game = CATALOGUE["fig-6.1c"].game("", 6)
+    row = {"run": digest(game, 0), "run_without": "0123", "seed": 0, "robot": 0, "n": 6}
+    labels = (("mine", ""), ("fig-6.1c", "other"), ("fig-6.1c", ""))
+    for (scenario, condition), name in zip(labels, (row["run"], row["run"], "0123"), strict=True):
+        whole = {field.name: None for field in SCHEMA} | row | {"scenario": scenario, "condition": condition}
+        whole["absent_from"] = "game"
+        pq.write_table(pa.Table.from_pylist([whole], schema=SCHEMA), "contribution.parquet")
+        with pytest.raises(InputError, match=f"run='{name}': is of another version of kswarms, or of a "):
+            recorded_run(Path(), str(name))
+        with pytest.raises(InputError, match="must be a directory with a ledger"):
+            recorded_run(Path(), "4567")
+    Path("contribution.parquet").write_text("no table")
+    with pytest.raises(InputError, match=r"has a contribution[.]parquet that cannot be read"):
+        recorded_run(Path(), "0123")
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import pytest
 
 from scenarios.catalogue import CATALOGUE
 from scenarios.cli import progress
-from scenarios.cli.progress import Count, clock, told
+from scenarios.cli.progress import Count, clock, told, tracked
 from scenarios.runner import Failure, Outcome, Result
 from scenarios.runs import Run, expand
 
@@ -32,6 +32,8 @@ def test_time_left_is_told_by_work_not_by_runs(monkeypatch: pytest.MonkeyPatch) 
     count.add(RUNS[0], failed=False)  # 30 of 30 + 30 + 6 + 6 robots
     assert count.left == pytest.approx(5.0 * 42 / 30)
     assert count.rate == pytest.approx(0.2)
+    count.worked = count.work + 1e-9  # added in another order
+    assert count.left == 0.0
 
 
 def test_lines_are_json_and_the_last_one_tells_all(
@@ -61,6 +63,7 @@ def test_a_bar_names_the_scenario_and_counts_failures(capsys: pytest.CaptureFixt
     assert [count.failed for count in told(ended(), RUNS, "bar")][-1] == 1
     printed = capsys.readouterr()
     assert printed.out == ""
+    assert "\x1b" not in printed.err  # no terminal, no control characters
     assert "fig-6.1a" in printed.err
     assert "4/4 (1 failed) runs" in " ".join(printed.err.split())
 
@@ -69,6 +72,18 @@ def test_a_bar_names_the_scenario_and_counts_failures(capsys: pytest.CaptureFixt
 def test_nothing_is_told_of_nothing(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert list(told([], [], kind)) == []
     assert capsys.readouterr().err == ""
+
+
+def test_steps_are_tracked_on_a_terminal_alone(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert list(tracked("abc", "spelling", 3)) == ["a", "b", "c"]
+    assert capsys.readouterr() == ("", "")
+    monkeypatch.setenv("FORCE_COLOR", "1")  # which rich takes for a terminal
+    assert list(tracked("abc", "spelling", 3)) == ["a", "b", "c"]
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert "spelling" in printed.err
 
 
 def test_times_are_told_as_people_say_them() -> None:

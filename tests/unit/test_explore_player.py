@@ -13,12 +13,19 @@ from model.foraging import GameModel
 from model.game import Game, Swarm
 from scenarios.explore import player as player_module
 from scenarios.explore.player import Player
-from scenarios.explore.robot import look_into
+from scenarios.explore.robot import RobotView
+from scenarios.explore.robot import look_into as look
 
 
 def _game(policies: str = "avoid,attack", n: int = 10, **rest: Any) -> Game:
     swarms = tuple(Swarm(policy=policy, size=n // 2) for policy in policies.split(","))
     return Game(swarms=swarms, **{"duration": 40.0, **rest})
+
+
+def look_into(model: GameModel, robot: int) -> RobotView:
+    view = look(model, robot)
+    assert view is not None
+    return view
 
 
 LEARNING = _game("attack,inter-learner", learning=60.0)

@@ -9,6 +9,7 @@ from scenarios.catalogue import CATALOGUE
 from scenarios.explore import session as session_module
 from scenarios.explore.session import Session
 from scenarios.explore.views import curves_of, frame_of, scene_of
+from scenarios.runner import RunError
 from scenarios.runs import Run, digest
 
 
@@ -153,10 +154,10 @@ def test_a_session_that_is_closed_plays_no_more(session: Session) -> None:
 def test_the_browser_is_given_plain_data(session: Session) -> None:
     player = session.player
     scene = scene_of(player)
-    assert scene["swarm"] == [0] * 10 + [1] * 10
     assert len(scene["bases"]) == len(scene["colours"]) == 2
     frame = frame_of(player, 3, 5, sectors=False, sensors=True)
     assert (frame["number"], frame["time"], frame["pucks"], frame["supply"]) == (3, 0.0, (0, 0), [-1, -1])
+    assert (frame["swarm"], frame["robots"]) == ([0] * 10 + [1] * 10, tuple(range(20)))
     assert len(frame["sensors"]) == 8
     positions = player.picture().positions
     assert frame["x"] == pytest.approx(positions[:, 0], abs=1e-4)
@@ -186,6 +187,18 @@ def test_once_the_game_has_begun_only_what_is_learned_is_shown_from_before_it() 
     first = first_times()
     assert first.pop("Share of learners whose best action is to fight") == -20.0
     assert set(first.values()) == {0.0}
+
+
+def test_a_chart_of_no_time_yet_begins_where_its_game_does() -> None:
+    session = Session("fig-6.4b")
+
+    def axes() -> set[tuple[float, float]]:
+        axes = (chart["xAxis"] for chart in curves_of(session.player.history).values())
+        return {(axis["min"], axis["max"]) for axis in axes}
+
+    assert axes() == {(-3000.0, -2990.0)}
+    session.player.advance(60.0)
+    assert axes() == {(-3000.0, -2940.0)}
 
 
 def test_a_game_that_fails_stops_and_says_why(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -231,3 +244,11 @@ def test_a_policy_of_a_file_of_ones_own_plays(session: Session, tmp_path: Path) 
     file.write_text("class Coward:\n    pass\n")
     session.change_swarm(1, policy=f"{file}:Cowerd")
     assert "has no class Cowerd" in session.error
+
+
+def test_a_policy_that_fails_before_its_game_is_told_as_a_run_that_failed(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(session_module, "Player", lambda *_: 1 // 0)
+    with pytest.raises(RunError, match=r"the game of fig-6\.1c failed: ZeroDivisionError: integer"):
+        Session("fig-6.1c")
