@@ -109,6 +109,7 @@ class Krembot(ContinuousSpaceAgent):
         self._allowed = actions
         self._fleet = model.fleet
         self._phase = model.fleet.phase
+        self._opponent = model.fleet.opponent
         self._stride = model.fleet.stride
         self._turn_rate = model.fleet.turn_rate
         self._habits = model.habits
@@ -239,7 +240,7 @@ class Krembot(ContinuousSpaceAgent):
                 self.policy_name,
                 f"choose({swarm}) must return an action of the game, not {action!r}",
             )
-        self._fleet.opponent[index] = other
+        self._opponent[index] = other
         self._opponent_swarm = swarm
         self._is_open = True
         self._active = active
@@ -358,7 +359,8 @@ class Krembot(ContinuousSpaceAgent):
         self._phase[index] = phase
         self._stride[index] = 0.0
         self._turn_rate[index] = angle / periods
-        self._wait(periods, then, "turn")
+        timer = self._timer = Timeout(self._env, periods, "turn")  # `_wait` written out, as above
+        timer.callbacks.append(then)
 
     def _wait(self, periods: int, then: Callable[[Any], None], what: str) -> None:
         """Call `then` after a time, with the event that is then `_timer`, unless another wait has begun."""

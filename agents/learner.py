@@ -1,7 +1,9 @@
 """The learner: a bandit for each swarm-ID that a robot can meet (section 1.5, Algorithm 1)."""
 
-from math import isfinite
-from typing import TYPE_CHECKING, Any, Literal
+from math import isfinite, nan
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+from numpy.random import Generator
 
 from agents.actions import AWAY, Action
 from agents.bandit import Bandit
@@ -12,6 +14,9 @@ from agents.streams import Purpose
 
 if TYPE_CHECKING:
     from agents.policies import Setting
+
+_NOTHING: Final = (nan, nan)
+"""Reward and value of a conflict that nothing is learned from."""
 
 
 class Learner:
@@ -81,6 +86,8 @@ class Learner:
                 raise InputError("reward", reward, f"names swarm {opponent}, which it learns nothing about")
         self.learning = True
         self._draws = setting.streams.draws
+        self._explore: Generator | None = None
+        """The stream that it draws from, once it did."""
         self._opponent = -1
         self._arm = -1
 
@@ -97,7 +104,10 @@ class Learner:
             return self._otherwise
         if not self.learning:
             return self.learned(opponent)
-        self._arm = self.rule.choose(bandit, self._draws(Purpose.EXPLORE))
+        draws = self._explore
+        if draws is None:
+            draws = self._explore = self._draws(Purpose.EXPLORE)
+        self._arm = self.rule.choose(bandit, draws)
         if not 0 <= self._arm < len(self.actions):
             raise InputError("rule", self._arm, f"must choose 0 to {len(self.actions) - 1}")
         bandit.choices += 1
@@ -121,7 +131,7 @@ class Learner:
         opponent, arm = self._opponent, self._arm
         bandit = self.bandits.get(opponent)
         if bandit is None or not self.learning:
-            return float("nan"), float("nan")
+            return _NOTHING
         reward = self._reward.of(
             t_a, t_p, n_active, self.actions[arm].direction, opponent != self.swarm, opponent + 1
         )

@@ -304,18 +304,20 @@ class GameModel(mesa.Model):
         """Hand the first `size` events of the kernel to their robots, in the order of their numbers."""
         robots, swarm_of = self.robots, self._swarm_of
         pick_ups = []
-        for index, kind, other, active, vacant, angle in self._kernel.events[:size].tolist():
-            robot = robots[index]
+        numbers, kinds, others, actives, vacants, angles = self._kernel.fields
+        for k in range(size):
+            robot, kind = robots[numbers[k]], kinds[k]
             if kind == CONFLICT:
-                robot.meet(now, other, swarm_of[other], angle, active, vacant)
+                other = others[k]
+                robot.meet(now, other, swarm_of[other], angles[k], actives[k], vacants[k])
             elif kind == LEG_DUE:
                 robot.begin_leg()
             elif kind == TURN_DUE:
                 robot.begin_wander_turn()
             elif kind == HOMING:
-                robot.go_home(angle)
+                robot.go_home(angles[k])
             elif kind == PICK_UP:
-                pick_ups.append((robot, other))
+                pick_ups.append((robot, others[k]))
             elif kind == DEPOSIT:
                 robot.deposit()
                 self.pucks[robot.swarm] += 1

@@ -35,6 +35,8 @@ class Kernel:
     ----------
     events : ndarray of `model.percepts.EVENT`, shape (n,)
         What the robots must decide on since the last call of `advance`.
+    fields : list of memoryview, shape (n,)
+        Its fields, in their order: to read a few numbers, faster than the array.
     supply : ndarray of int64, shape (stations,)
         Pucks left at each station, −1 for no limit.
     advance : callable
@@ -45,6 +47,7 @@ class Kernel:
     def __init__(self, game: Game, arena: Arena, fleet: Fleet) -> None:
         n = len(fleet.positions)
         self.events: Records = np.zeros(n, dtype=EVENT)
+        self.fields = [self.events[name].data for name in EVENT.names or ()]
         stations: Records = np.zeros(len(arena.stations), dtype=STATION)
         stations["x"], stations["y"] = arena.stations.T
         stations["supply"] = game.supply or -1
