@@ -16,6 +16,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from scenarios.cli import invoke
+from tests.interrupts import heed_interrupts
 
 pytest.importorskip("solara", reason="needs the extra `explore`")
 webdriver = pytest.importorskip("selenium.webdriver", reason="needs selenium, of the extra `test`")
@@ -47,6 +48,7 @@ def served(*arguments: str) -> Iterator[str]:
         stderr=subprocess.PIPE,
         text=True,
         env=environment,
+        preexec_fn=heed_interrupts,
     )
     assert server.stdout is not None
     assert server.stderr is not None

@@ -28,6 +28,7 @@ from scenarios.ledger import FILE, Ledger, find_run
 from scenarios.runner import Failure, play
 from scenarios.runs import expand
 from scenarios.study import Study, holder
+from tests.interrupts import heed_interrupts
 
 TINY = Scenario(
     id="tiny",
@@ -149,6 +150,7 @@ def test_ctrl_c_stops_the_workers_and_keeps_what_is_done() -> None:
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
+        preexec_fn=heed_interrupts,
     ) as process:
         assert process.stderr is not None
         line = json.loads(process.stderr.readline())
