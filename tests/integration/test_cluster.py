@@ -93,7 +93,7 @@ def test_a_sweep_that_nobody_listens_to_any_more_leaves_nothing_on_the_cluster(c
         with connected(cluster.scheduler_address) as (executor, jobs):
             played = sweep(expand([SMALL.replace(densities=(40, 50), seeds=100)]), jobs, executor=executor)
             next(played)
-            assert client.run_on_scheduler(tasks) > 30
+            assert client.run_on_scheduler(tasks) > 2  # not only what the two workers play
             played.close()
         deadline = time.monotonic() + 10
         while client.run_on_scheduler(tasks):
