@@ -22,8 +22,8 @@ _CLOSE: Final = 0.1
 """Gap below which the relaxation keeps an eye on a pair, as a part of the radius."""
 _PLAIN_PASSES: Final = 3
 """Passes before the relaxation gathers momentum: enough for all but jams."""
-_MOMENTUM: Final = 0.5
-"""Part of the last pass's move that a pass adds; with 0.8 jams are flung apart, with 0.5 none was seen."""
+_MOST_MOMENTUM: Final = 0.8
+"""Part of the last pass's move that a pass adds in the end."""
 _PASSES: Final = 200
 """Passes of the relaxation before it looks again at which pairs are close."""
 _ROUNDS: Final = 50
@@ -234,7 +234,7 @@ def relax(positions: Floats, radius: float, half: float, work: Records, pairs: R
             worst = _measure_overlaps(positions, radius, work, pairs, n_close)
             if worst <= TOLERANCE:
                 break
-            _part(positions, limit, work, n_queued, 0.0 if done < _PLAIN_PASSES else _MOMENTUM)
+            _part(positions, limit, work, n_queued, _momentum(done))
             done += 1
     return done
 
@@ -324,11 +324,19 @@ def _measure_overlaps(positions: Floats, radius: float, work: Records, pairs: Re
 
 
 @compiled
+def _momentum(done: int) -> float:
+    """Return the part of the last move to add in a pass after `done` others, growing as in Nesterov's method."""
+    gathered = done - _PLAIN_PASSES + 1
+    return min(_MOST_MOMENTUM, max(0.0, gathered / (gathered + 6.0)))
+
+
+@compiled
 def _part(positions: Floats, limit: float, work: Records, n_queued: int, momentum: float) -> None:
     """Move the queued bodies apart as measured, not beyond the walls, and forget the measures.
 
     A jam needs many passes, each of which carries a correction one body farther: a part of the last
-    pass's move is added, which makes it about three times fewer.
+    pass's move is added, which makes it about four times fewer. A body that is free stops at once: one that
+    went on would be flung into the next.
     """
     move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
     count, queue = work["count"], work["queue"]
@@ -336,8 +344,9 @@ def _part(positions: Floats, limit: float, work: Records, n_queued: int, momentu
         i = queue[q]
         # Three and more corrections at once would overshoot: twice their mean does not.
         scale = 2.0 / max(2, count[i])
-        move_x[i] = momentum * move_x[i] + scale * shove_x[i]
-        move_y[i] = momentum * move_y[i] + scale * shove_y[i]
+        kept = momentum if count[i] > 0 else 0.0
+        move_x[i] = kept * move_x[i] + scale * shove_x[i]
+        move_y[i] = kept * move_y[i] + scale * shove_y[i]
         positions[i, 0] = min(limit, max(-limit, positions[i, 0] + move_x[i]))
         positions[i, 1] = min(limit, max(-limit, positions[i, 1] + move_y[i]))
         shove_x[i] = 0.0

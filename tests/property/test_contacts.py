@@ -13,6 +13,7 @@ from agents.fleet import ACTION, Floats, Integers
 from model.game import Game, Swarm
 from model.parameters import PRESETS
 from model.percepts import CONFLICT, HOMING, PICK_UP
+from tests.reference.contacts import Ground, translate
 from tests.reference.states import Scene, clone, make_scene, mirrored, scenes, unit
 
 R = KREMBOT_SIM.radius
@@ -186,17 +187,26 @@ def test_a_wall_takes_the_normal_part_and_its_friction(
 # ----------------------------------------------------------------------------------------------------- wedges
 
 
+@pytest.mark.parametrize("aside", [0.001, 0.002, -0.01])
 @pytest.mark.parametrize("turn", [0.0, 0.3, 2.0, -2.8])
-def test_a_wedge_gives_way_a_little(turn: float) -> None:
+def test_a_wedge_gives_way_a_little(turn: float, aside: float) -> None:
     # Two stand, less than a body apart; a third drives in between, and in the end through.
     turned = np.array((unit(turn), unit(turn + math.pi / 2)))
-    positions = np.array(((0.0, 1.75 * R), (0.0, -1.75 * R), (-1.1 * R, 0.002))) @ turned
-    scene = make_scene(game_of(3), positions, [0.0, 0.0, turn], np.array((0.0, 0.0, STRIDE)))
+    positions = np.array(((0.0, 1.75 * R), (0.0, -1.75 * R), (-1.1 * R, aside))) @ turned
+    game = game_of(3)
+    scene = make_scene(game, positions, [0.0, 0.0, turn], np.array((0.0, 0.0, STRIDE)))
     moved = drive(scene, 60) @ turned.T
     assert moved[2, 0] > 2 * R
-    # A quarter of a radius each would let it through.
-    assert 0.2 * R < moved[0, 1] < 0.3 * R
-    assert 0.2 * R < -moved[1, 1] < 0.3 * R
+    assert min(moved[0, 1], -moved[1, 1]) > 0.1 * R
+    # Half a radius in all would let it through.
+    assert moved[0, 1] - moved[1, 1] == pytest.approx(0.5 * R, abs=0.01 * R)
+    # Equal shares over and over, and nothing else, would share it between the two in the same way.
+    plain = Ground(R, game.side / 2, game.parameters.friction, 0.0, most_momentum=0.0)
+    slow = positions.copy()
+    for _ in range(60):
+        translate(slow, STRIDE * np.array(((0, 0), (0, 0), unit(turn))), plain)
+    given_way = (slow - positions) @ turned.T
+    np.testing.assert_allclose(moved[:2], given_way[:2], rtol=0, atol=0.01 * R)
 
 
 @settings(deadline=None, max_examples=20)

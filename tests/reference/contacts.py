@@ -13,8 +13,6 @@ NO_OVERLAP = 1e-9
 """Bodies that overlap by less (m) just touch: how many are counted must not hang on the last bit."""
 PLAIN_PASSES = 3
 """Passes before momentum sets in."""
-MOMENTUM = 0.5
-"""Part of a body's last correction that is added to the next."""
 ROUNDS = 50
 WATCHED_GAP = 0.1
 """Part of the radius: pairs farther apart are not looked at before the next round."""
@@ -31,6 +29,7 @@ class Ground(NamedTuple):
     half: float
     friction: float
     push_share: float
+    most_momentum: float = 0.8  # part of an overlapping body's last correction that is added to the next
 
 
 class Contact(NamedTuple):
@@ -123,11 +122,17 @@ def relax(positions: Floats, ground: Ground) -> None:
             overlap[~watched | (overlap < 0)] = 0.0
             if overlap.max() <= TOLERANCE:
                 break
-            last = _halves(positions, overlap) + (MOMENTUM * last if passes >= PLAIN_PASSES else 0.0)
+            kept = np.where((overlap > NO_OVERLAP).any(axis=1), _momentum(passes, ground), 0.0)
+            last = _halves(positions, overlap) + kept[:, None] * last
             positions += last
             np.clip(positions, -limit, limit, out=positions)
             passes += 1
     raise AssertionError("the bodies do not come apart")
+
+
+def _momentum(passes: int, ground: Ground) -> float:
+    since = passes - PLAIN_PASSES
+    return min(ground.most_momentum, (since + 1) / (since + 7)) if since >= 0 else 0.0
 
 
 def _overlaps(positions: Floats, ground: Ground) -> Floats:
