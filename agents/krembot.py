@@ -6,40 +6,23 @@ timeout that a conflict has overtaken finds another one in its place and does no
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Final, Protocol, cast
+from collections.abc import Callable, Sequence
+from typing import Any, Final, cast
 
-import simpy
-from mesa.experimental.continuous_space import ContinuousSpace, ContinuousSpaceAgent
+from mesa.experimental.continuous_space import ContinuousSpaceAgent
 from simpy.events import Timeout
 
 from agents.actions import TOWARDS, Action
-from agents.body import SENSORS
 from agents.errors import InputError
-from agents.fleet import ACTION, HOME, HOME_TURN, HOMING_ERROR, IDLE, LEG, LEG_OVER, TURN, Fleet
-from agents.habits import Conflict, Habits
+from agents.fleet import ACTION, HOME, HOME_TURN, HOMING_ERROR, IDLE, LEG, LEG_OVER, TURN
+from agents.habits import Conflict
 from agents.policies import LearningPolicy, Policy
-from agents.sensors import SECTOR, heads_for, read_robots, walls_met, wrap
+from agents.sensors import ANGLES_OF, heads_for, read_robots, walls_met, wrap
 from agents.streams import Purpose, Streams
+from agents.world import World
 
 _STRAIGHT: Final = 1e-9
 """A turn by less than this angle is none (rad)."""
-_VACANT_ANGLES: Final = [
-    tuple(wrap(sensor * SECTOR) for sensor in range(SENSORS) if vacant >> sensor & 1)
-    for vacant in range(2**SENSORS)
-]
-"""Angles of the sensors whose bits are set (rad)."""
-
-
-class World(Protocol):
-    """What a robot needs of the model it lives in."""
-
-    env: simpy.Environment
-    space: ContinuousSpace
-    fleet: Fleet
-    habits: Habits
-    action_periods: Mapping[str, int]
-    conflict_log: list[Conflict] | None
 
 
 class Krembot(ContinuousSpaceAgent):
@@ -312,7 +295,7 @@ class Krembot(ContinuousSpaceAgent):
 
     def _vacant_direction(self, vacant: int) -> float:
         """Return the angle of the most vacant sensor from the heading (rad), ties broken at random."""
-        angles = _VACANT_ANGLES[vacant]
+        angles = ANGLES_OF[vacant]
         if len(angles) == 1:
             return angles[0]
         return angles[int(self._draws(Purpose.VACANT).random() * len(angles))]

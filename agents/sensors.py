@@ -27,6 +27,13 @@ def wrap(angle: float) -> float:
     return angle - 2.0 * math.pi * math.ceil((angle - math.pi) / (2.0 * math.pi))
 
 
+ANGLES_OF: Final = [
+    tuple(wrap(sensor * SECTOR) for sensor in range(SENSORS) if bits >> sensor & 1)
+    for bits in range(2**SENSORS)
+]
+"""Angles of the sensors whose bits are set, from the heading (rad)."""
+
+
 @compiled
 def wall_ray(x: float, y: float, dx: float, dy: float, half: float) -> float:
     """Return the distance from (x, y) along the unit vector (dx, dy) to the wall it meets."""

@@ -13,23 +13,18 @@ from typing import Any, NoReturn, cast
 import mesa
 import numpy as np
 import simpy
-from mesa.experimental.continuous_space import ContinuousSpace
 from simpy.core import StopSimulation
 from simpy.events import Event
 
 from agents.errors import InputError
-from agents.fleet import Fleet
 from agents.habits import Conflict, Habits
 from agents.krembot import Krembot
-from agents.outside import is_reference
-from agents.policies import Setting, deal, make_policy
-from agents.streams import Streams
 from model import recording
 from model.clock import AFTER_TIMEOUTS, BEFORE_TIMEOUTS, Instant
 from model.game import Game
 from model.kernel import Kernel
 from model.percepts import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE
-from model.placement import start_poses
+from model.population import make_robots, place, take_away
 
 
 class GameModel(mesa.Model):
@@ -101,7 +96,8 @@ class GameModel(mesa.Model):
         self._sampled_end = False
         self._start = math.ceil(game.learning / game.parameters.period - 1e-9)
         """When the measured game begins (periods)."""
-        self._populate()
+        self.space, self.fleet = place(game, self.arena, self.seed, self.random)
+        self._let_play(make_robots(self, game, self.seed))
         if game.absent and (game.absent_from == "learning" or self._start == 0):
             self._take_away(game.absent)
         self._kernel = Kernel(game, self.arena, self.fleet)
@@ -200,52 +196,15 @@ class GameModel(mesa.Model):
             tables["trajectory"] = recording.trajectory_table(self)
         return tables
 
-    def _populate(self) -> None:
-        """Put the robots into the space, at rest."""
-        game, body, parameters = self.game, self.game.body_preset, self.game.parameters
-        half = self.arena.half
-        positions, headings = start_poses(
-            game.size, self.seed, half, body.radius, parameters.clearance, parameters.wall_clearance
-        )
-        self.space = ContinuousSpace(
-            [[-half, half], [-half, half]], torus=False, random=self.random, n_agents=game.size
-        )
-        swarm_of = np.repeat(np.arange(len(game.swarms)), [swarm.size for swarm in game.swarms])
-        # The space's own array, so that Mesa's view of the positions is the kernel's.
-        self.fleet = Fleet(self.space._agent_positions, swarm_of, headings)
-        self.members: list[list[Krembot]] = []
-        index = 0
-        for k, swarm in enumerate(game.swarms):
-            strides = (parameters.period * body.top_speed * d for d in (swarm.drive, swarm.drive_action))
-            stride_program, stride_action = strides
-            self.members.append([])
-            for place, name in enumerate(deal(swarm.policy, swarm.size)):
-                streams = Streams(self.seed, index)
-                policy = make_policy(name, Setting(k, len(game.swarms), game.action_set, streams, place))
-                robot = Krembot(
-                    *(self, index, k, policy, name, streams),
-                    *(stride_program, stride_action, len(game.swarms)),
-                    # The package's own policies choose what they were given.
-                    actions=game.action_set if is_reference(name) else None,
-                )
-                self.members[k].append(robot)
-                index += 1
-        self.robots = [robot for members in self.members for robot in members]
-        self.fleet.positions[:] = positions
-        self._swarm_of: list[int] = swarm_of.tolist()
-
     def _take_away(self, absent: Sequence[int]) -> None:
         """Take robots out of the game: their bodies, what they wait for, and the pucks that they carry."""
-        for number in absent:
-            self.robots[number].finish(cast(int, self.env.now))
-            self.robots[number].remove()
-        self.robots = [robot for robot in self.robots if robot.number not in absent]
+        self._let_play(take_away(self, self.robots, absent))
+
+    def _let_play(self, robots: list[Krembot]) -> None:
+        self.robots = robots
         swarms = range(len(self.game.swarms))
-        self.members = [[robot for robot in self.robots if robot.swarm == k] for k in swarms]
-        self.fleet.keep(np.array([robot.index for robot in self.robots]), self.space.agent_positions)
-        for row, robot in enumerate(self.robots):
-            robot.index = row
-        self._swarm_of = self.fleet.swarm.tolist()
+        self.members = [[robot for robot in robots if robot.swarm == k] for k in swarms]
+        self._swarm_of = [robot.swarm for robot in robots]
 
     def _begin_game(self, _: Event) -> None:
         """End the learning: policies are fixed, and all counts begin anew in the world as it is."""

@@ -13,7 +13,7 @@ from scipy.spatial.distance import pdist
 from agents.errors import InputError
 from agents.fleet import Floats
 from agents.streams import Purpose, stream
-from model.contacts import TOLERANCE, relax
+from model.relaxation import TOLERANCE, relax
 from model.world import PAIR, WORK
 
 _BATCHES: Final = (16, 256, 4096, 4096)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from agents.fleet import Floats
-from model.contacts import TOLERANCE
+from model.relaxation import TOLERANCE
 
 # How the relaxation goes about it: numbers of the compiled code, which change where a jam comes to rest.
 NO_OVERLAP = 1e-9

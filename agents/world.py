@@ -1,0 +1,21 @@
+"""What a robot sees of the model that it lives in; `model.foraging.GameModel` is one."""
+
+from collections.abc import Mapping
+from typing import Protocol
+
+import simpy
+from mesa.experimental.continuous_space import ContinuousSpace
+
+from agents.fleet import Fleet
+from agents.habits import Conflict, Habits
+
+
+class World(Protocol):
+    """What a robot needs of the model it lives in."""
+
+    env: simpy.Environment
+    space: ContinuousSpace
+    fleet: Fleet
+    habits: Habits
+    action_periods: Mapping[str, int]
+    conflict_log: list[Conflict] | None

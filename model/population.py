@@ -1,0 +1,113 @@
+"""The robots of a game: where they start, who they are, and what is left without some of them."""
+
+from collections.abc import Sequence
+from random import Random
+
+import numpy as np
+from mesa.experimental.continuous_space import ContinuousSpace
+
+from agents.fleet import Fleet
+from agents.krembot import Krembot
+from agents.outside import is_reference
+from agents.policies import Setting, deal, make_policy
+from agents.streams import Streams
+from agents.world import World
+from model.arena import Arena
+from model.game import Game
+from model.placement import start_poses
+
+
+def place(game: Game, arena: Arena, seed: int, random: Random) -> tuple[ContinuousSpace, Fleet]:
+    """Put the bodies of all robots into the arena, at rest.
+
+    Parameters
+    ----------
+    game : Game
+        What is played.
+    arena : Arena
+        Where.
+    seed : int
+        Of the run.
+    random : random.Random
+        What Mesa's space asks for; nothing here draws from it.
+
+    Returns
+    -------
+    space : mesa.experimental.continuous_space.ContinuousSpace
+        Of the positions, without agents yet.
+    fleet : Fleet
+        The rows of the robots, on the same array of positions.
+
+    Raises
+    ------
+    InputError
+        If the robots find no place.
+    """
+    half, body, parameters = arena.half, game.body_preset, game.parameters
+    positions, headings = start_poses(
+        game.size, seed, half, body.radius, parameters.clearance, parameters.wall_clearance
+    )
+    space = ContinuousSpace([[-half, half], [-half, half]], torus=False, random=random, n_agents=game.size)
+    swarm_of = np.repeat(np.arange(len(game.swarms)), [swarm.size for swarm in game.swarms])
+    # The space's own array, so that Mesa's view of the positions is the kernel's.
+    fleet = Fleet(space._agent_positions, swarm_of, headings)
+    fleet.positions[:] = positions
+    return space, fleet
+
+
+def make_robots(model: World, game: Game, seed: int) -> list[Krembot]:
+    """Make the robots of all swarms, each with its policy and streams.
+
+    Parameters
+    ----------
+    model : World
+        Which they live in; its fleet has their rows.
+    game : Game
+        What is played.
+    seed : int
+        Of the run.
+
+    Raises
+    ------
+    InputError
+        If a policy cannot be made.
+    """
+    period, top_speed = game.parameters.period, game.body_preset.top_speed
+    robots: list[Krembot] = []
+    for k, swarm in enumerate(game.swarms):
+        for rank, name in enumerate(deal(swarm.policy, swarm.size)):
+            index = len(robots)
+            streams = Streams(seed, index)
+            policy = make_policy(name, Setting(k, len(game.swarms), game.action_set, streams, rank))
+            robot = Krembot(
+                *(model, index, k, policy, name, streams),
+                stride_program=period * top_speed * swarm.drive,
+                stride_action=period * top_speed * swarm.drive_action,
+                swarms=len(game.swarms),
+                # The package's own policies choose what they were given.
+                actions=game.action_set if is_reference(name) else None,
+            )
+            robots.append(robot)
+    return robots
+
+
+def take_away(model: World, robots: Sequence[Krembot], absent: Sequence[int]) -> list[Krembot]:
+    """Take robots out of a game, and return the others, whose rows close their ranks.
+
+    Parameters
+    ----------
+    model : World
+        Which they live in.
+    robots : sequence of Krembot
+        All that are there, by number; nobody may be absent yet.
+    absent : sequence of int
+        Numbers of those who go.
+    """
+    for number in absent:
+        robots[number].finish(int(model.env.now))
+        robots[number].remove()
+    rest = [robot for robot in robots if robot.number not in absent]
+    model.fleet.keep(np.array([robot.index for robot in rest]), model.space.agent_positions)
+    for row, robot in enumerate(rest):
+        robot.index = row
+    return rest
