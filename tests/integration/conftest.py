@@ -1,9 +1,10 @@
-"""What several files of these tests begin with: a study to play in, games that can be broken."""
+"""What several files of these tests begin with: a study to play in, games to break, a page to look at."""
 
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -32,3 +33,11 @@ def break_games(monkeypatch: pytest.MonkeyPatch) -> Callable[[Fault], None]:
         monkeypatch.setattr(GameModel, "play", broken)
 
     return install
+
+
+@pytest.fixture
+def show(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Any]]:
+    """Show pages, and close them."""
+    from tests.shown_page import showing  # here, for the other tests do without the extra `explore`
+
+    yield from showing(monkeypatch)
