@@ -17,6 +17,9 @@ from model.parameters import PRESETS
 settings.register_profile("kswarms", deadline=None)
 settings.load_profile("kswarms")
 
+# What fails in a helper beside the tests shows its values, as it does in a test.
+pytest.register_assert_rewrite("tests")
+
 Pose = tuple[float, float, float]
 Scene = Callable[..., GameModel]
 

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -10,7 +9,7 @@ import pytest
 from scipy import stats
 
 from agents.errors import InputError
-from analysis.findings import FAILS, FINDINGS, HOLDS, NO_DATA, UNDECIDED, Finding, Verdict, judge, judge_all
+from analysis.findings import FAILS, FINDINGS, HOLDS, NO_DATA, UNDECIDED, Verdict, judge_all
 from analysis.findings.claims import (
     Agreement,
     Claim,
@@ -25,89 +24,26 @@ from analysis.findings.verdicts import Region
 from analysis.published import table_6_1
 from analysis.results import Results
 from analysis.statistics import Interval
+from tests.made_up_results import (
+    BEHIND,
+    DENSITIES,
+    FAR,
+    LEARNED,
+    LEVEL,
+    MIXED,
+    NEAR,
+    S1,
+    S2,
+    TIE,
+    duel,
+    learners,
+    more,
+    policies,
+    runs,
+    verdict_on,
+)
 
-DENSITIES = (6, 16, 30, 40, 50)
-S1, S2 = Quantity(scenario="duel", swarm=1), Quantity(scenario="duel", swarm=2)
-BOTH = Quantity(scenario="duel")
-LEARNED = Quantity(measure="learned_attack", scenario="fig-6.4a", swarm=2)
 WITHIN = Quantity(measure="learned_flight_within", scenario="fig-6.8", swarm=2)
-
-
-def noise(seeds: int, densities: int, scale: float = 1.0, seed: int = 0) -> Any:
-    """Return draws, (seeds, densities), whose mean is 0 at each density."""
-    draws = np.random.default_rng(seed).normal(scale=scale, size=(seeds, densities))
-    return draws - draws.mean(axis=0)
-
-
-def runs(
-    curves: Sequence[Sequence[float]],
-    densities: Sequence[int] = DENSITIES,
-    seeds: int = 10,
-    scenario: str = "duel",
-    condition: str = "",
-    scale: float = 1.0,
-) -> pd.DataFrame:
-    """Return runs in which swarm k scores, on the mean of the seeds, the k-th curve."""
-    rows = []
-    for swarm, curve in enumerate(curves, start=1):
-        values = np.asarray(curve) + noise(seeds, len(densities), scale, seed=swarm)
-        for (seed, column), pucks in np.ndenumerate(values):
-            n = densities[column]
-            size, lived = n // 2, 600.0 * (n // 2)
-            row = {"scenario": scenario, "condition": condition, "n": n, "seed": seed, "swarm": swarm}
-            row |= {"size": size, "pucks": pucks, "sud": pucks, "duration": 600.0}
-            row |= {"t_a_intra": 0.1 * lived, "t_a_inter": 0.3 * lived, "t_p": 0.6 * lived}
-            row |= {"conflicts_intra": 3, "conflicts_inter": 5}
-            rows.append(row)
-    return pd.DataFrame(rows)
-
-
-def policies(
-    shares: Sequence[float],
-    densities: Sequence[int] = DENSITIES,
-    seeds: int = 10,
-    scenario: str = "fig-6.4a",
-    opponent: int = 1,
-    scale: float = 0.0,
-) -> pd.DataFrame:
-    """Return policies of S2 in which these shares learned to attack a swarm."""
-    values = np.asarray(shares) + noise(seeds, len(densities), scale)
-    rows = [
-        {"scenario": scenario, "condition": "", "n": densities[column], "seed": seed, "swarm": 2}
-        | {"opponent": opponent, "action": action, "attack_share": share}
-        for (seed, column), share in np.ndenumerate(values)
-        for action in ("flight", "fight")
-    ]
-    return pd.DataFrame(rows)
-
-
-def learners(shares: Sequence[float], **rest: Any) -> Results:
-    """Return results of learners, and the games they played."""
-    scenario = rest.get("scenario", "fig-6.4a")
-    seeds = rest.get("seeds", 10)
-    densities = rest.get("densities", DENSITIES)
-    level = [0.0] * len(densities)
-    return Results(runs([level, level], densities, seeds, scenario), policies(shares, **rest))
-
-
-def verdict_on(claim: Claim, results: Results, confidence: float = 0.95) -> Verdict:
-    return judge(Finding(id="it", statement="It is so.", claim=claim, confidence=confidence), results)
-
-
-def more(relation: str = ">", over: str = "each N", margin: float = 0.0, **rest: Any) -> Compare:
-    return Compare(**{"left": S2, "relation": relation, "right": S1, "over": over, "margin": margin, **rest})
-
-
-LEVEL = [10.0] * 5
-
-
-def duel(lead: Sequence[float], **rest: Any) -> Results:
-    """Return results in which S2 scores so much more than S1."""
-    return Results(runs([LEVEL, [10 + each for each in lead]], **rest))
-
-
-FAR, NEAR, TIE, BEHIND = [5.0] * 5, [0.5] * 5, [0.0] * 5, [-5.0] * 5
-MIXED = [5.0, 5.0, 5.0, 5.0, -5.0]
 
 
 @pytest.mark.parametrize(
@@ -258,113 +194,6 @@ def test_other_seeds_are_no_pairs(over: str, note: str) -> None:
     results = Results(pd.concat([duel(FAR).runs, other]))
     verdict = verdict_on(more(right=Quantity(scenario="other", swarm=1), over=over), results)
     assert (verdict.verdict, verdict.note) == (NO_DATA, note)
-
-
-# ---------------------------------------------------------------------------------------- what a verdict says
-
-
-def test_a_verdict_at_every_density_shows_the_one_that_decides() -> None:
-    verdict = verdict_on(more(), duel([5, 3, 5, 5, 5]))
-    assert verdict.effect == pytest.approx(3)
-    assert verdict.low is not None
-    assert verdict.high is not None
-    assert 0 < verdict.low < 3 < verdict.high
-    assert verdict.note == "N = 6, 16, 30, 40, 50; the numbers are of N = 16, where it is least so"
-    failed = verdict_on(more(), duel([5, -4, 5, -9, 5]))
-    assert failed.effect == pytest.approx(-9)
-    assert failed.note.endswith("false at N = 16, 40")
-
-
-def test_a_verdict_in_a_line() -> None:
-    verdict = Verdict("it", "It is so.", HOLDS, 1.25, 0.5, 2.0, "pucks", 8, "N = 6")
-    assert str(verdict) == "it holds: 1.25 pucks (0.5 … 2); 8 seeds; N = 6"
-    open_ended = Verdict("it", "It is so.", UNDECIDED, 36.125, 30.0, None, "robots", 8, "N = 6, 50")
-    assert str(open_ended) == "it undecided: 36.12 robots (30 … –); 8 seeds; N = 6, 50"
-    unknown = Verdict("it", "It is so.", NO_DATA, note="no runs of fig-6.1a")
-    assert str(unknown) == "it no data; 0 seeds; no runs of fig-6.1a"
-
-
-def test_an_undecided_verdict_says_how_many_seeds_would_decide() -> None:
-    verdict = verdict_on(more(), duel([5, 0.5, 5, 5, 5]))
-    assert verdict.verdict == UNDECIDED
-    assert "sure at N = 6, 30, 40, 50" in verdict.note
-    assert "more seeds decide it (power 80%)" in verdict.note
-    assert "no number of seeds would decide it" in verdict_on(more(over="mean over N"), duel(TIE)).note
-
-
-def test_a_density_that_is_missing_is_named() -> None:
-    verdict = verdict_on(more(densities=(6, 26, 30)), duel(FAR))
-    assert (verdict.verdict, verdict.note.split("; ")[1]) == (HOLDS, "without N = 26")
-
-
-@pytest.mark.parametrize(
-    "claim",
-    [
-        more(),
-        more(over="mean over N"),
-        Overtake(ahead=S2, behind=S1, between=(16, 30)),
-        Peak(quantity=S2),
-        Trend(quantity=S2),
-    ],
-    ids=str,
-)
-def test_too_few_seeds_decide_nothing(claim: Claim) -> None:
-    verdict = verdict_on(claim, duel([-9, 9, 99, 9, 9], seeds=4))
-    assert (verdict.verdict, verdict.low, verdict.high, verdict.seeds) == (UNDECIDED, None, None, 4)
-    assert verdict.note.endswith("seeds at least")
-
-
-def test_to_fail_at_one_of_many_densities_takes_more_seeds_than_at_one() -> None:
-    # Six seeds suffice for 95 %, but five densities take 99 %: eight.
-    assert verdict_on(more(), duel(BEHIND, seeds=7)).verdict == UNDECIDED
-    assert verdict_on(more(), duel(BEHIND, seeds=8)).verdict == FAILS
-    assert verdict_on(more(densities=(6,)), duel(BEHIND, seeds=6)).verdict == FAILS
-
-
-def test_a_single_seed_gives_its_number_alone() -> None:
-    verdict = verdict_on(more(over="mean over N"), duel(FAR, seeds=1))
-    assert (verdict.verdict, verdict.effect, verdict.low) == (UNDECIDED, 5.0, None)
-
-
-def test_a_lead_in_doubt_at_either_end_is_told() -> None:
-    verdict = verdict_on(Overtake(ahead=S2, behind=S1, between=(16, 30)), duel([1, 1, 1, 1, 0.5]))
-    assert (verdict.verdict, verdict.low, verdict.high) == (UNDECIDED, None, None)
-    assert "perhaps ahead from N = 6 on" in verdict.note
-    assert "perhaps not ahead at N = 50" in verdict.note
-    assert (
-        "the mean curves do not cross"
-        in verdict_on(Overtake(ahead=S2, behind=S1, between=(16, 30)), duel(FAR)).note
-    )
-
-
-def test_only_seeds_that_both_sides_have_are_compared() -> None:
-    results = duel(FAR)
-    kept = (results.runs["swarm"] == 1) | (results.runs["seed"] >= 2) | (results.runs["n"] != 16)
-    verdict = verdict_on(more(), Results(results.runs[kept]))
-    assert (verdict.verdict, verdict.seeds) == (HOLDS, 8)
-
-
-@pytest.mark.parametrize(
-    ("measure", "expected", "unit"),
-    [
-        ("time_in_conflict", 40.0, "% of time"),
-        ("time_inter", 30.0, "% of time"),
-        ("time_intra", 10.0, "% of time"),
-        ("conflicts_inter", 10.0, "conflicts"),
-        ("conflicts_intra", 6.0, "conflicts"),
-        ("pucks", 20.0, "pucks"),
-    ],
-)
-def test_what_all_swarms_together_measure(measure: str, expected: float, unit: str) -> None:
-    claim = Compare(left=BOTH.replace(measure=measure), relation=">", right=0.0, over="mean over N")
-    verdict = verdict_on(claim, duel(TIE))
-    assert (verdict.effect, verdict.unit) == (pytest.approx(expected), unit)
-
-
-def test_the_difference_of_percentages_is_in_points() -> None:
-    claim = more(left=S2.replace(measure="time_inter"), right=S2.replace(measure="time_intra"))
-    verdict = verdict_on(claim, duel(TIE))
-    assert (verdict.effect, verdict.unit, verdict.verdict) == (pytest.approx(20), "percentage points", HOLDS)
 
 
 @pytest.mark.parametrize("lead", [FAR, NEAR, TIE, BEHIND, MIXED], ids=str)
