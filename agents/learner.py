@@ -118,10 +118,8 @@ class Learner:
 
         Parameters
         ----------
-        t_a, t_p : float
-            T(a) and T(p) (s).
-        n_active : int
-            n'_i, sensors that were active when it began.
+        t_a, t_p, n_active
+            As in `agents.policies.LearningPolicy.learn`.
 
         Returns
         -------

@@ -138,10 +138,8 @@ def values_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
 
     Parameters
     ----------
-    conflicts : pandas.DataFrame
-        Conflicts of one game.
-    title : str
-        What it is of.
+    conflicts, title
+        As for `choices_figure`.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """The controls at the side of the page: what is played."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, Final
 
 import solara
@@ -163,22 +163,16 @@ def _learning(session: Session, act: Act) -> None:
     def change(part: str, name: str = "", **arguments: float) -> None:
         act(lambda: session.change_learning(part, name, **arguments))
 
+    def choose(label: str, part: str, known: Iterable[str], name: str) -> None:
+        names = list(dict.fromkeys([*known, name]))
+        solara.Select(label, value=name, values=names, on_value=lambda name: change(part, name))
+
     with solara.Details("Learning", expand=True):
-        solara.Select(
-            "Reward",
-            value=learning.reward,
-            values=list(dict.fromkeys([*REWARDS, learning.reward])),
-            on_value=lambda name: change("reward", name),
-        )
+        choose("Reward", "reward", REWARDS, learning.reward)
         if learning.delta is not None:
             label = f"Δ = {learning.delta:g}"
             _slider(label, learning.delta, (0.0, 0.5, 0.005), lambda delta: change("reward", delta=delta))
-        solara.Select(
-            "Selection rule",
-            value=learning.rule,
-            values=list(dict.fromkeys([*RULES, learning.rule])),
-            on_value=lambda name: change("rule", name),
-        )
+        choose("Selection rule", "rule", RULES, learning.rule)
         if learning.gamma is not None:
             label = f"γ = {learning.gamma:g}"
             _slider(label, learning.gamma, (0.0, 1.0, 0.005), lambda gamma: change("rule", gamma=gamma))

@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from agents.actions import AWAY, TOWARDS
 from agents.rewards import WLU, IndividualUtility, SingleSwarmWLU
+from agents.theory import times
 from agents.theory.estimates import (
     estimated_wlu,
     identical_swarms_wlu,
@@ -15,23 +16,7 @@ from agents.theory.estimates import (
     sigma,
 )
 from agents.theory.swarms import opponents_utility
-from agents.theory.times import (
-    Crowd,
-    Interaction,
-    absent_to_one,
-    absent_to_swarm,
-    approximate_wlu,
-    delta,
-    gamma,
-    inter_utility,
-    intra_utility,
-    mixed_utility,
-    pair_utility,
-    present_to_own_swarm,
-    time_utility,
-    wlu_of_equal_times,
-    wlu_per_robot_met,
-)
+from agents.theory.times import Crowd, Interaction
 from agents.theory.wlu import effect_on_own_swarm, wlu_by_parts
 
 seconds = st.floats(0, 600)
@@ -52,25 +37,26 @@ def near(value: float, *sizes: float) -> object:
 
 @given(interactions, interactions)
 def test_a_pair_of_opponents_is_zero_sum(one: Interaction, other: Interaction) -> None:
-    assert pair_utility(one, other) == opponents_utility(pair_utility(other, one))
-    assert inter_utility(one, [other]) == near(pair_utility(one, other), *one, *other)
+    assert times.pair_utility(one, other) == opponents_utility(times.pair_utility(other, one))
+    assert times.inter_utility(one, [other]) == near(times.pair_utility(one, other), *one, *other)
 
 
 @given(some, some)
 def test_two_groups_that_meet_are_zero_sum(ours: list[Interaction], theirs: list[Interaction]) -> None:
-    one = [inter_utility(robot, theirs) for robot in ours]
-    other = [inter_utility(robot, ours) for robot in theirs]
+    one = [times.inter_utility(robot, theirs) for robot in ours]
+    other = [times.inter_utility(robot, ours) for robot in theirs]
     assert sum(one) == near(-sum(other), *one, *other)
 
 
 @given(interactions, some)
 def test_meeting_many_is_meeting_each(own: Interaction, others: list[Interaction]) -> None:
-    pairs = [pair_utility(own, other) for other in others]
-    size = sum(abs(time_utility(*other)) + 1e4 for other in others)
-    assert inter_utility(own, others) == near(sum(pairs), size)
-    assert absent_to_swarm(others) == near(sum(absent_to_one(other) for other in others))
-    assert present_to_own_swarm(others) == near(sum(time_utility(*other) for other in others), size)
-    assert intra_utility(len(others), *own) == near(len(others) * time_utility(*own))
+    pairs = [times.pair_utility(own, other) for other in others]
+    size = sum(abs(times.time_utility(*other)) + 1e4 for other in others)
+    assert times.inter_utility(own, others) == near(sum(pairs), size)
+    assert times.absent_to_swarm(others) == near(sum(times.absent_to_one(other) for other in others))
+    present = sum(times.time_utility(*other) for other in others)
+    assert times.present_to_own_swarm(others) == near(present, size)
+    assert times.intra_utility(len(others), *own) == near(len(others) * times.time_utility(*own))
 
 
 @given(interactions, st.integers(0, 8), st.lists(some, max_size=3))
@@ -78,8 +64,8 @@ def test_a_mixed_meeting_is_the_sum_over_swarms(
     own: Interaction, n_k: int, opponents: list[list[Interaction]]
 ) -> None:
     together = [other for swarm in opponents for other in swarm]
-    mixed = mixed_utility(own, n_k, *opponents)
-    assert mixed == near(mixed_utility(own, n_k, together), 1e4 * len(together))
+    mixed = times.mixed_utility(own, n_k, *opponents)
+    assert mixed == near(times.mixed_utility(own, n_k, together), 1e4 * len(together))
 
 
 @given(interactions, some, some)
@@ -87,12 +73,12 @@ def test_the_wlu_of_times_is_theorem_13(
     own: Interaction, mates: list[Interaction], opponents: list[Interaction]
 ) -> None:
     parts = (
-        intra_utility(len(mates), *own),
-        inter_utility(own, opponents),
-        effect_on_own_swarm(present_to_own_swarm(mates), absent_to_swarm(mates)),
-        absent_to_swarm(opponents),
+        times.intra_utility(len(mates), *own),
+        times.inter_utility(own, opponents),
+        effect_on_own_swarm(times.present_to_own_swarm(mates), times.absent_to_swarm(mates)),
+        times.absent_to_swarm(opponents),
     )
-    assert approximate_wlu(own, mates, opponents) == near(wlu_by_parts(*parts), *parts, 1e5)
+    assert times.approximate_wlu(own, mates, opponents) == near(wlu_by_parts(*parts), *parts, 1e5)
 
 
 @given(crowds, seconds, seconds)
@@ -100,10 +86,10 @@ def test_the_wlu_of_equal_times(crowd: Crowd, t_a: float, t_p: float) -> None:
     own = Interaction(t_a, t_p, crowd.alpha_i, crowd.beta_i)
     mates = [Interaction(t_a, t_p, crowd.alpha_k, crowd.beta_k)] * crowd.n_k
     opponents = [Interaction(t_a, t_p, crowd.alpha_m, crowd.beta_m)] * crowd.n_m
-    of_times = approximate_wlu(own, mates, opponents)
-    equal = wlu_of_equal_times(crowd, t_a, t_p)
+    of_times = times.approximate_wlu(own, mates, opponents)
+    equal = times.wlu_of_equal_times(crowd, t_a, t_p)
     assert equal == near(of_times, 1e5)
-    assert wlu_per_robot_met(crowd, t_a, t_p) == near(equal / (crowd.n_k + crowd.n_m), 1e5)
+    assert times.wlu_per_robot_met(crowd, t_a, t_p) == near(equal / (crowd.n_k + crowd.n_m), 1e5)
 
 
 @given(st.lists(st.tuples(weights, weights), min_size=1, max_size=5), interactions, seconds, seconds)
@@ -113,8 +99,8 @@ def test_equal_times_ask_for_means_of_weights_alone(
     opponents = [Interaction(t_a, t_p, alpha, beta) for alpha, beta in theirs]
     alpha, beta = (sum(values) / len(theirs) for values in zip(*theirs, strict=True))
     crowd = Crowd(0, len(theirs), own.alpha, own.beta, alpha_m=alpha, beta_m=beta)
-    of_times = approximate_wlu(Interaction(t_a, t_p, own.alpha, own.beta), [], opponents)
-    assert wlu_of_equal_times(crowd, t_a, t_p) == near(of_times, 1e5)
+    of_times = times.approximate_wlu(Interaction(t_a, t_p, own.alpha, own.beta), [], opponents)
+    assert times.wlu_of_equal_times(crowd, t_a, t_p) == near(of_times, 1e5)
 
 
 # What a robot can compute.
@@ -126,7 +112,7 @@ met = st.tuples(st.integers(0, 8), st.integers(0, 8)).filter(any)
 def test_identical_swarms(n: tuple[int, int], t_a: float, t_p: float, alpha: float, beta: float) -> None:
     crowd = Crowd(*n, alpha, beta, alpha, beta, alpha, beta)
     exact = identical_swarms_wlu(*n, t_a, t_p, alpha, beta)
-    assert exact == near(wlu_per_robot_met(crowd, t_a, t_p) / beta, 1e5)
+    assert exact == near(times.wlu_per_robot_met(crowd, t_a, t_p) / beta, 1e5)
     assert WLU().of(0.0, t_p, 8, TOWARDS, True, 1) == near(t_p)
 
 
@@ -134,7 +120,7 @@ def test_identical_swarms(n: tuple[int, int], t_a: float, t_p: float, alpha: flo
 def test_the_opponents_advantage(n: tuple[int, int], alpha: float, beta: float, b: float) -> None:
     crowd = Crowd(*n, alpha, beta, alpha, beta, alpha, beta_m=b * beta)
     exact = program_weight(*n, b)
-    assert exact == near(gamma(crowd) / (sum(n) * beta), 100)
+    assert exact == near(times.gamma(crowd) / (sum(n) * beta), 100)
     assert program_weight_of_equals(b) == near(program_weight(n[0] + 1, n[0] + 1, b))
 
 
@@ -143,10 +129,10 @@ def test_a_swarm_that_is_alone(
     n_k: int, t_a: float, t_p: float, alpha_i: float, alpha_k: float, beta: float
 ) -> None:
     crowd = Crowd(n_k, 0, alpha_i, beta, alpha_k, beta)
-    exact = wlu_of_equal_times(crowd, t_a, t_p) / (8 * beta)
+    exact = times.wlu_of_equal_times(crowd, t_a, t_p) / (8 * beta)
     reward = SingleSwarmWLU(kappa=kappa(alpha_i, alpha_k, beta))
     assert reward.of(t_a, t_p, n_k, AWAY, False, 1) == near(exact, 1e6)
-    assert delta(crowd) / (n_k * beta) == near(-kappa(alpha_i, alpha_k, beta), 1e3)
+    assert times.delta(crowd) / (n_k * beta) == near(-kappa(alpha_i, alpha_k, beta), 1e3)
 
 
 @given(seconds, seconds, st.integers(0, 8), st.sampled_from((AWAY, TOWARDS)), st.booleans(), st.floats(0, 1))
