@@ -2,7 +2,7 @@
 
 Every leg, turn, flight and fight is one SimPy timeout, whose end only marks that a decision is due; the
 decision is taken in the next percepts, by the same instant's view of the world for all robots. A
-timeout that a conflict has overtaken finds another one in its place and does nothing.
+timeout that a conflict has overtaken finds another one in its place, `_timer`, and does nothing.
 """
 
 import math
@@ -165,7 +165,8 @@ class Krembot(ContinuousSpaceAgent):
         habits = self._habits
         self._drive(LEG, self._stride_program)
         duration = self._draws(Purpose.LEG).exponential(habits.leg_mean)
-        self._wait(habits.periods(duration), self._leg_over, "leg")
+        timer = self._timer = Timeout(self._env, habits.periods(duration), "leg")
+        timer.callbacks.append(self._leg_over)
 
     def begin_wander_turn(self) -> None:
         """Turn in place by a uniform angle."""
@@ -302,7 +303,7 @@ class Krembot(ContinuousSpaceAgent):
 
     def _drive_action(self, event: Timeout | None) -> None:
         if event is self._timer and self._action is not None:
-            # `_drive` and `_wait` written out: every conflict comes through here.
+            # `_drive` written out: every conflict comes through here.
             index = self.index
             self._phase[index] = ACTION
             self._stride[index] = self._stride_action
@@ -342,10 +343,5 @@ class Krembot(ContinuousSpaceAgent):
         self._phase[index] = phase
         self._stride[index] = 0.0
         self._turn_rate[index] = angle / periods
-        timer = self._timer = Timeout(self._env, periods, "turn")  # `_wait` written out, as above
-        timer.callbacks.append(then)
-
-    def _wait(self, periods: int, then: Callable[[Any], None], what: str) -> None:
-        """Call `then` after a time, with the event that is then `_timer`, unless another wait has begun."""
-        timer = self._timer = Timeout(self._env, periods, what)
+        timer = self._timer = Timeout(self._env, periods, "turn")
         timer.callbacks.append(then)
