@@ -8,8 +8,10 @@ from collections.abc import Generator, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import active_children, get_context, parent_process
+from multiprocessing.synchronize import Event
 from typing import Any, Final
 
+from agents.errors import InputError
 from scenarios.runner import Failure, Outcome, Result, play_through
 from scenarios.runs import Run
 
@@ -34,6 +36,11 @@ def in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[Resul
         Number of processes.
     record : str
         Names of the tables to record, separated by commas.
+
+    Raises
+    ------
+    InputError
+        If no process comes up, since each would run the calling script anew.
     """
     # Fresh workers for each portion bound what Mesa leaves behind in a process. The executor's own
     # `max_tasks_per_child` hangs in Python 3.11 (CPython issue 115634).
@@ -70,9 +77,15 @@ def _in_fresh_processes(
     waiting: deque[Run], jobs: int, at_once: int, record: str
 ) -> Generator[tuple[Run, Outcome | Failure | None, float], None, None]:
     others = set(active_children())
-    executor = _Processes(jobs, get_context("spawn"), _follow_parent)
+    context = get_context("spawn")
+    started = context.Event()
+    executor = _Processes(jobs, context, _begin, (started,))
     try:
-        yield from play_through(executor, waiting, at_once, record)
+        for run, result, seconds in play_through(executor, waiting, at_once, record):
+            if result is None and not started.is_set():
+                guard = 'if __name__ == "__main__"'
+                raise InputError("jobs", jobs, f"needs processes, and none came up: is there no {guard}?")
+            yield run, result, seconds
     except BaseException:
         # Ctrl-C, or nobody wants the rest: do not wait for games that may take minutes.
         for worker in set(active_children()) - others:
@@ -99,8 +112,9 @@ def _interrupts_held() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
-def _follow_parent() -> None:
-    """Let this worker end when its parent does, even if that is killed."""
+def _begin(started: Event) -> None:
+    """Say that this worker came up, and let it end when its parent does, even if that is killed."""
+    started.set()
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 

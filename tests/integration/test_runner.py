@@ -186,6 +186,23 @@ def test_whoever_stops_listening_stops_the_workers() -> None:
 
 
 @pytest.mark.slow
+def test_a_script_that_each_worker_would_run_anew_is_told_so(tmp_path: Path) -> None:
+    script = tmp_path / "unguarded.py"
+    script.write_text(
+        "from scenarios.catalogue import CATALOGUE\n"
+        "from scenarios.runner import play_all\n"
+        "from scenarios.runs import expand\n"
+        "list(play_all(expand([CATALOGUE['fig-6.1a'].replace(densities=(6,), seeds=3)]), 2))\n"
+    )
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 1
+    *_, last = done.stderr.splitlines()
+    assert last.endswith(
+        'InputError: jobs=2: needs processes, and none came up: is there no if __name__ == "__main__"?'
+    )
+
+
+@pytest.mark.slow
 def test_workers_end_with_their_parent_even_if_it_is_killed(tmp_path: Path) -> None:
     script = tmp_path / "parent.py"
     script.write_text(
