@@ -63,6 +63,15 @@ class Krembot(ContinuousSpaceAgent):
         Conflicts begun, by the opponent's swarm.
     """
 
+    # Every conflict reads and writes many of them, and beyond thirty a dict no longer finds them at once.
+    __slots__ = (
+        *("number", "index", "swarm", "policy", "policy_name", "pucks", "t_a", "t_p", "conflicts"),
+        *("_env", "_draws", "_learn", "_allowed", "_fleet", "_phase", "_opponent", "_stride", "_turn_rate"),
+        *("_habits", "_turn_step", "_action_periods", "_log", "_stride_program", "_stride_action"),
+        *("_timer", "_since", "_action", "_is_open", "_is_over", "_active", "_opponent_swarm"),
+        *("_open", "_open_t_a"),
+    )
+
     def __init__(
         self,
         model: World,
