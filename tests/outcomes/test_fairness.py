@@ -213,7 +213,8 @@ EXCHANGES = [
 def play_exchanged(game: Game, seed: int, exchange: Exchange) -> float:
     """Play a game and its image, and return how far apart they ever are (m), compared every period.
 
-    Infinity if rounding decided which of two that were equally near a robot met; it must have been rounding.
+    Infinity if rounding decided which of two, equally near, a robot met, or which way it turned round.
+    It must have been rounding.
     """
     twins = [exchange.twins(robot, game.size) for robot in range(game.size)]
     model = GameModel(game, seed, sample_period=game.parameters.period)
@@ -225,15 +226,20 @@ def play_exchanged(game: Game, seed: int, exchange: Exchange) -> float:
     path = []
     while not model.ended:
         model.step()
-        met = image_of[model.fleet.robots["opponent"][twins]]
-        path.append((model.fleet.positions[twins] * exchange.signs, met))
+        robots = model.fleet.robots[twins]
+        turns = -robots["turn_rate"] if exchange.turns_over else robots["turn_rate"]
+        path.append((model.fleet.positions[twins] * exchange.signs, image_of[robots["opponent"]], turns))
     apart, tied = 0.0, False
     with pytest.MonkeyPatch.context() as monkeypatch:
         exchange_draws(image, exchange, monkeypatch)
-        for positions, met in path:
+        for positions, met, turns in path:
             before = image.fleet.positions.copy()
             image.step()
             apart = max(apart, float(np.abs(image.fleet.positions - positions).max()))
+            opposite = abs(turns + image.fleet.robots["turn_rate"]) < 1e-12
+            for turn in turns[opposite & (turns != 0)]:
+                # Whoever drives home, flees straight back and turns home again turns by exactly half a turn.
+                tied |= apart < 1e-6 and abs(math.remainder(math.pi, turn)) < 1e-9
             for robot in np.flatnonzero(image.fleet.robots["opponent"] != met):
                 if apart < 1e-6 and not tied:
                     distances = [

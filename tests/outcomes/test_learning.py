@@ -21,6 +21,11 @@ FIRST_SEED: Final = 1000
 ONE_SIDED: Final = 0.9
 """Of two-sided intervals: each bound alone is one of 95 %."""
 
+TABLE_ERROR: Final = 8.0
+"""Mean absolute error over the cells of Table 6.1 that is tolerated (percentage points)."""
+CONTRADICTED: Final = ("6.4b", 30)
+"""Where the learner scores less than its opponent, against the source: by 2.6 pucks over 120 seeds."""
+
 BY_ID: Final = {finding.id: finding for finding in FINDINGS}
 
 
@@ -35,19 +40,14 @@ class Sample(NamedTuple):
         Games of each scenario and density.
     scenarios : tuple of tuple of str
         Which ones, in groups that are played together.
-    table_error : float
-        Mean absolute error over the cells of Table 6.1 that is tolerated (percentage points).
     """
 
     densities: tuple[int, ...]
     seeds: int
     scenarios: tuple[tuple[str, ...], ...] = LEARNING
-    table_error: float = 8.0
 
 
-# Among the few are the two densities at which a column is farthest off (by 15 and 20 points): over these six
-# cells any eight seeds measure errors of 6 to 7.
-FEW = Sample((6, 30, 50), seeds=8, table_error=10.0)
+FEW = Sample((6, 30, 50), seeds=8)
 ALL = Sample(DENSITIES, seeds=20)
 # Scores of few robots vary most from seed to seed, and cost least.
 SPARSE = Sample((6, 10, 16), seeds=20, scenarios=(("fig-6.4b",),))
@@ -82,13 +82,23 @@ def without_margin(finding: Finding, **changes: Any) -> Finding:
 
 @each_sample
 @pytest.mark.parametrize("figure", ["6.4a", "6.4b"])
-def test_the_learner_scores_at_least_as_much_as_its_opponent_at_every_density(
+def test_the_learner_scores_at_least_as_much_as_its_opponent(
     figure: str, sample: Sample, outcomes: Outcomes
 ) -> None:
     # Where all learn flight both swarms do the same: a tie, which one interval in twenty denies.
-    verdict = judge(without_margin(BY_ID[f"{figure}-at-least"]), outcomes(sample, f"fig-{figure}"))
+    densities = tuple(n for n in sample.densities if (figure, n) != CONTRADICTED)
+    finding = without_margin(BY_ID[f"{figure}-at-least"], densities=densities)
+    verdict = judge(finding, outcomes(sample, f"fig-{figure}"))
     assert verdict.verdict != FAILS, str(verdict)
     assert verdict.seeds == sample.seeds
+
+
+@pytest.mark.full
+def test_against_attackers_learners_of_flight_score_less_at_one_density(outcomes: Outcomes) -> None:
+    figure, n = CONTRADICTED
+    finding = without_margin(BY_ID[f"{figure}-at-least"], relation="<", densities=(n,))
+    verdict = judge(finding, outcomes(ALL, f"fig-{figure}"))
+    assert verdict.verdict == HOLDS, str(verdict)
 
 
 @pytest.mark.parametrize(
@@ -125,7 +135,7 @@ def effect(verdict: Verdict) -> float:
 @each_sample
 def test_table_6_1(sample: Sample, outcomes: Outcomes) -> None:
     verdict = judge(BY_ID["table-6.1"], outcomes(sample, "fig-6.4a"))
-    assert effect(verdict) <= sample.table_error, str(verdict)
+    assert effect(verdict) <= TABLE_ERROR, str(verdict)
     assert f"{2 * len(sample.densities)} cells" in verdict.note
 
 
