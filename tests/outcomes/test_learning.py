@@ -109,8 +109,9 @@ def test_against_attackers_learners_of_flight_score_less_at_one_density(outcomes
     ],
 )
 def test_against_attackers_the_learner_scores_clearly_more(sample: Sample, outcomes: Outcomes) -> None:
-    """The source has it so at every N; twenty seeds show it over several N together."""
-    finding = without_margin(BY_ID["6.4b-clearly-more"], over="mean over N")
+    """The source has it so at every N; seen it is at each where robots are few, and over all N together."""
+    over = "each N" if sample is SPARSE else "mean over N"
+    finding = without_margin(BY_ID["6.4b-clearly-more"], over=over)
     verdict = judge(finding, outcomes(sample, "fig-6.4b"))
     assert verdict.verdict == HOLDS, str(verdict)
 
