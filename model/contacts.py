@@ -8,11 +8,14 @@ that is left (a wedge) is relaxed (`model.relaxation`). Compiled.
 """
 
 import math
+from typing import Final
 
 from agents.compiled import compiled
 from agents.fleet import Floats, Integers, Records
 from model.relaxation import relax
 from model.world import MAX_CONTACTS
+
+JAMMED: Final = "bodies overlap, and nothing parts them: there are too many, or periods are too long"
 
 
 @compiled
@@ -35,6 +38,11 @@ def translate(
         Written.
     pairs : ndarray of `model.world.PAIR`, shape (capacity,)
         All pairs that can touch; written: which are close.
+
+    Raises
+    ------
+    ValueError
+        If overlaps remain.
     """
     radius, half, n_pairs = world["radius"][0], world["half"][0], world["n_pairs"][0]
     friction, push_share = world["friction"][0], world["push_share"][0]
@@ -60,7 +68,14 @@ def translate(
         positions[i, 0] += move_x[i] + shove_x[i]
         positions[i, 1] += move_y[i] + shove_y[i]
     if crowded:
-        relax(positions, radius, half, work, pairs, n_pairs)
+        part(positions, world, work, pairs)
+
+
+@compiled
+def part(positions: Floats, world: Records, work: Records, pairs: Records) -> None:
+    """Relax what overlaps; arguments and errors are those of `translate`."""
+    if relax(positions, world["radius"][0], world["half"][0], work, pairs, world["n_pairs"][0]) < 0:
+        raise ValueError(JAMMED)
 
 
 @compiled

@@ -10,7 +10,7 @@ from typing import Final
 from agents.compiled import compiled
 from agents.fleet import Floats, Integers, Records
 from agents.sensors import wrap
-from model.contacts import translate
+from model.contacts import JAMMED, part, translate
 from model.neighbours import refresh
 from model.percepts import find_pucks, perceive
 
@@ -18,6 +18,9 @@ from model.percepts import find_pucks, perceive
 PUCKS: Final = 0
 PERCEPTS: Final = 1
 MOTION: Final = 2
+
+_RENEWALS: Final = 50
+"""Lists of neighbours that one period may take: jams send bodies farther only where there is no room."""
 
 
 @compiled
@@ -68,7 +71,7 @@ def advance(
     """
     heading, turn_rate = robots["heading"], robots["turn_rate"]
     forward_x, forward_y = robots["forward_x"], robots["forward_y"]
-    stage, n_pairs = world["stage"], world["n_pairs"]
+    stage = world["stage"]
     while tick < until or stage[0] != PUCKS:
         if stage[0] == PUCKS:
             stage[0] = PERCEPTS
@@ -77,19 +80,7 @@ def advance(
                 return tick, size
         if stage[0] == PERCEPTS:
             stage[0] = MOTION
-            listed = refresh(
-                positions,
-                world["half"][0],
-                world["pair_reach"][0],
-                world["skin"][0],
-                work["origin_x"],
-                work["origin_y"],
-                pairs,
-                cell_start,
-                work["cell_robots"],
-            )
-            if listed >= 0:
-                n_pairs[0] = listed
+            _list_neighbours(positions, world, work, pairs, cell_start)
             size = perceive(positions, robots, world, bases, work, pairs, cell_start, events)
             if size > 0:
                 return tick, size
@@ -101,6 +92,41 @@ def advance(
                 forward_x[i] = math.cos(heading[i])
                 forward_y[i] = math.sin(heading[i])
         translate(positions, robots, world, work, contacts, pairs)
+        _part_strangers(positions, world, work, pairs, cell_start)
         stage[0] = PUCKS
         tick += 1
     return tick, 0
+
+
+@compiled
+def _list_neighbours(
+    positions: Floats, world: Records, work: Records, pairs: Records, cell_start: Integers
+) -> bool:
+    """Make the lists of neighbours anew if they are not good any more; return whether they were not."""
+    listed = refresh(
+        positions,
+        world["half"][0],
+        world["pair_reach"][0],
+        world["skin"][0],
+        work["origin_x"],
+        work["origin_y"],
+        pairs,
+        cell_start,
+        work["cell_robots"],
+    )
+    if listed < 0:
+        return False
+    world["n_pairs"][0] = listed
+    return True
+
+
+@compiled
+def _part_strangers(
+    positions: Floats, world: Records, work: Records, pairs: Records, cell_start: Integers
+) -> None:
+    """Part those whom the motion took so far that they came upon bodies that are not on their lists."""
+    for _ in range(_RENEWALS):
+        if not _list_neighbours(positions, world, work, pairs, cell_start):
+            return
+        part(positions, world, work, pairs)
+    raise ValueError(JAMMED)

@@ -23,7 +23,11 @@ _MOST_MOMENTUM: Final = 0.8
 """Part of the last pass's move that a pass adds in the end."""
 _PASSES: Final = 200
 """Passes of the relaxation before it looks again at which pairs are close."""
-_ROUNDS: Final = 50
+_ROUNDS: Final = 200
+_STUCK: Final = 1000
+"""Passes after which a straight row between walls is suspected, which none of them can part."""
+_TURN: Final = 0.01
+"""By how much the pairs of such a row are then turned (rad)."""
 _FORGET_AFTER: Final = 4
 _FORGET_EVERY: Final = 8
 """Passes after which the relaxation forgets pairs at rest: most jams are resolved long before the worst."""
@@ -53,7 +57,7 @@ def relax(positions: Floats, radius: float, half: float, work: Records, pairs: R
     Returns
     -------
     int
-        Passes that were needed.
+        Passes that were needed, −1 if all that there are did not do.
     """
     move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
     count, limit = work["count"], half - radius
@@ -64,7 +68,7 @@ def relax(positions: Floats, radius: float, half: float, work: Records, pairs: R
     for _ in range(_ROUNDS):
         n_close, worst = _find_close(positions, radius, pairs, n_pairs)
         if worst <= TOLERANCE:
-            break
+            return done
         for i in range(len(positions)):
             move_x[i] = 0.0
             move_y[i] = 0.0
@@ -72,6 +76,8 @@ def relax(positions: Floats, radius: float, half: float, work: Records, pairs: R
             shove_y[i] = 0.0
             count[i] = 0
         n_queued = _queue_bodies(work, pairs, n_close)
+        if done >= _STUCK:
+            _bend(positions, radius, work, pairs, n_close)
         for _ in range(_PASSES):
             if done % _FORGET_EVERY == _FORGET_AFTER:
                 n_close = _forget_resting(positions, radius, work, pairs, n_close)
@@ -81,7 +87,7 @@ def relax(positions: Floats, radius: float, half: float, work: Records, pairs: R
                 break
             _part(positions, limit, work, n_queued, _momentum(done))
             done += 1
-    return done
+    return -1
 
 
 @compiled
@@ -102,6 +108,23 @@ def _find_close(positions: Floats, radius: float, pairs: Records, n_pairs: int) 
             n_close += 1
             nearest = min(nearest, squared)
     return n_close, 2.0 * radius - math.sqrt(nearest)
+
+
+@compiled
+def _bend(positions: Floats, radius: float, work: Records, pairs: Records, n_close: int) -> None:
+    """Turn each overlapping pair a little about its middle, all the same way, out of the row it stands in."""
+    close_first, close_second = pairs["close_first"], pairs["close_second"]
+    shove_x, shove_y = work["shove_x"], work["shove_y"]
+    for c in range(n_close):
+        i = close_first[c]
+        j = close_second[c]
+        dx = positions[j, 0] - positions[i, 0]
+        dy = positions[j, 1] - positions[i, 1]
+        if dx * dx + dy * dy < (2.0 * radius - _TOUCH) ** 2:
+            shove_x[i] += _TURN * dy
+            shove_y[i] -= _TURN * dx
+            shove_x[j] -= _TURN * dy
+            shove_y[j] += _TURN * dx
 
 
 @compiled

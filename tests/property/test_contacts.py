@@ -2,17 +2,20 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.distance import pdist
 
 from agents.body import KREMBOT_SIM, SENSORS
 from agents.fleet import ACTION, Floats, Integers
 from model.game import Game, Swarm
 from model.parameters import PRESETS
 from model.percepts import CONFLICT, HOMING, PICK_UP
+from model.world import WORLD
 from tests.reference.contacts import Ground, translate
 from tests.reference.states import Scene, clone, make_scene, mirrored, scenes, unit
 
@@ -207,6 +210,32 @@ def test_a_wedge_gives_way_a_little(turn: float, aside: float) -> None:
         translate(slow, STRIDE * np.array(((0, 0), (0, 0), unit(turn))), plain)
     given_way = (slow - positions) @ turned.T
     np.testing.assert_allclose(moved[:2], given_way[:2], rtol=0, atol=0.01 * R)
+
+
+@pytest.mark.parametrize("across", [0.0, 0.4, 1 - R])
+@pytest.mark.parametrize("turn", [0.0, math.pi / 2, math.pi, -math.pi / 2])
+def test_a_straight_row_from_wall_to_wall_gives_way(turn: float, across: float) -> None:
+    # Twelve where there is room for less, exactly in line; one of them drives on.
+    along = np.linspace(R - 1, 1 - R, 12)
+    turned = np.array((unit(turn), unit(turn + math.pi / 2)))
+    positions = np.column_stack((along, np.full(12, across))) @ turned
+    scene = make_scene(game_of(12), positions, np.full(12, turn), STRIDE * (np.arange(12) == 3))
+    drive(scene)
+    assert pdist(scene.fleet.positions).min() > 2 * R - LARGEST_OVERLAP
+    assert np.abs(scene.fleet.positions).max() <= 1 - R + EXACT
+
+
+def test_what_cannot_be_parted_is_told() -> None:
+    # A hundred bodies that have grown since they were placed: they would cover more than there is.
+    side = np.linspace(R - 1, 1 - R, 10)
+    scene = make_scene(game_of(100), np.array([(x, y) for x in side for y in side]), 0.0, STRIDE)
+    advance = scene.kernel().advance
+    assert isinstance(advance, partial)
+    world = next(array for array in advance.args if array.dtype == WORLD)
+    world["radius"] = 0.11
+    assert advance(0, 1)[0] == 0  # some perceive something, and decide nothing
+    with pytest.raises(ValueError, match="nothing parts them"):
+        advance(0, 1)
 
 
 @settings(deadline=None, max_examples=20)
