@@ -184,12 +184,19 @@ class Player:
         ----------
         time : float
             Since the measured game began; negative for an instant of the learning (s).
+
+        Raises
+        ------
+        InputError
+            If it winds back and the game cannot be played any more, as files that it needs have changed; then
+            it stands where it was.
         """
         with self._lock:
             target = round((time + self.begin) / self.game.parameters.period)
             if target < self._steps:
-                self.close()
+                before = self.model
                 self._start()
+                before.forget()
             self._play_to(target)
 
     def to_next_conflict(self, robot: int) -> None:

@@ -80,6 +80,7 @@ class Session:
         self.show_sensors = True
         self.error = ""
         self._failed = False
+        self._passing = False
         self._owed = 0.0
         if isinstance(start, Run):
             self.source = f"run {start.digest}"
@@ -192,14 +193,15 @@ class Session:
         return next(learners, robots[0].number)
 
     @contextmanager
-    def _told(self) -> Iterator[None]:
-        """Tell what goes wrong in a line instead of letting it go on."""
+    def _told(self, passing: bool = False) -> Iterator[None]:
+        """Tell what goes wrong in a line instead of letting it go on; a passing one until it goes well."""
         try:
             yield
         except InputError as error:
             self.error = str(error)
+            self._passing = passing
         except Exception as error:  # noqa: BLE001  # a policy of the user's own may fail in any way
-            self._failed = True
+            self._failed = self._passing = True
             self.error = f"the game failed: {type(error).__name__}: {error}"
 
     # Playing.
@@ -225,10 +227,11 @@ class Session:
     def reset(self) -> None:
         """Go back to the beginning, that of learning."""
         self.goal = None
-        self.player.seek(-self.player.begin)
-        if self._failed:
+        with self._told(passing=True):
+            self.player.seek(-self.player.begin)
             self._failed = False
-            self.error = ""
+            if self._passing:
+                self.error = ""
 
     def go_to(self, time: float) -> None:
         """Go to an instant as fast as can be, in `tick`s."""
