@@ -200,7 +200,7 @@ class Session:
         except InputError as error:
             self.error = str(error)
             self._passing = passing
-        except Exception as error:  # noqa: BLE001  # a policy of the user's own may fail in any way
+        except (Exception, SystemExit) as error:  # noqa: BLE001  # a policy of the user's own may fail anyhow
             self._failed = self._passing = True
             self.error = f"the game failed: {type(error).__name__}: {error}"
 

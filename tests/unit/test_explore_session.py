@@ -210,16 +210,19 @@ def test_a_chart_of_no_time_yet_begins_where_its_game_does() -> None:
     assert axes() == {(-3000.0, -2940.0)}
 
 
-def test_a_game_that_fails_stops_and_says_why(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("failure", [ZeroDivisionError("by zero"), SystemExit("enough")])
+def test_a_game_that_fails_stops_and_says_why(
+    failure: BaseException, session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def choose(_opponent: int) -> None:
-        raise ZeroDivisionError("by zero")
+        raise failure
 
     for robot in session.player.model.robots:
         monkeypatch.setattr(robot.policy, "choose", choose)
     session.play()
     while session.active:
         session.tick(1.0)
-    assert session.error == "the game failed: ZeroDivisionError: by zero"
+    assert session.error == f"the game failed: {type(failure).__name__}: {failure}"
     session.go_to(500.0)
     assert not session.tick(1.0)  # a game that failed is over
     session.reset()  # with new robots
