@@ -235,9 +235,13 @@ class Session:
 
     def go_to(self, time: float) -> None:
         """Go to an instant as fast as can be, in `tick`s."""
-        self.goal = time
-        if time < self.player.time:
-            self.reset()
+        with self._told(passing=True):
+            if not math.isfinite(time):
+                raise InputError("t", time, "must be a finite number of seconds")
+            if time < self.player.time:
+                self.reset()
+            elif self._passing and not self._failed:
+                self.error = ""
             self.goal = time
 
     def next_conflict(self) -> None:

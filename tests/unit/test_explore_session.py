@@ -1,5 +1,6 @@
 """The page without the page: what its controls and buttons do."""
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -135,6 +136,20 @@ def test_going_to_an_instant_needs_no_playing(session: Session, monkeypatch: pyt
     assert session.player.ended == "time"
     session.reset()
     assert (session.player.time, session.player.ended) == (0.0, "")
+
+
+@pytest.mark.parametrize("time", [math.nan, math.inf, -math.inf])
+def test_an_instant_that_is_none_is_refused_until_another_is_asked_for(time: float, session: Session) -> None:
+    session.player.advance(3.0)
+    for instant in (1.0, 5.0):
+        session.go_to(time)
+        assert session.error == f"t={time}: must be a finite number of seconds"
+        assert not session.active
+        session.go_to(instant)
+        assert session.error == ""
+        while session.active:
+            session.tick(0.01)
+        assert session.player.time == instant
 
 
 def test_a_game_that_is_over_stands_still(session: Session) -> None:
