@@ -22,7 +22,7 @@ from types import TracebackType
 from typing import Any, Final, Self, TextIO
 
 from agents.errors import InputError
-from agents.files import UNFINISHED
+from agents.files import UNFINISHED, remove_unfinished
 from scenarios.description import Scenario
 from scenarios.files import make_directory, write_json
 from scenarios.ledger import FILE, Ledger
@@ -85,8 +85,7 @@ class Study:
             stack.enter_context(_locked(self.directory, self._command))
             for left in self.directory.glob(f"{_TABLES}*"):
                 shutil.rmtree(left, ignore_errors=True)
-            for left in self.directory.glob(f"{UNFINISHED}*-{MANIFEST}"):
-                left.unlink()
+            remove_unfinished(self.directory)
             self._ledger = stack.enter_context(Ledger(self.directory / FILE, new=True))
             self._open = stack.pop_all()
         return self
