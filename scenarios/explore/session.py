@@ -194,7 +194,10 @@ class Session:
 
     @contextmanager
     def _told(self, passing: bool = False) -> Iterator[None]:
-        """Tell what goes wrong in a line instead of letting it go on; a passing one until it goes well."""
+        """Tell what goes wrong in a line instead of letting it go on.
+
+        What is passing is told until the game goes where it is asked to; the rest, until the form is right.
+        """
         try:
             yield
         except InputError as error:
