@@ -31,3 +31,34 @@ def whole(path: Path) -> Generator[Path, None, None]:
         unfinished.replace(path)
     finally:
         unfinished.unlink(missing_ok=True)
+
+
+def remove_unfinished(directory: Path) -> None:
+    """Remove what `whole` has left in a directory of processes that were killed.
+
+    Files of processes that live are kept, for they may be finishing them.
+
+    Parameters
+    ----------
+    directory : Path
+        Where they lie, not below.
+
+    Raises
+    ------
+    OSError
+        If one cannot be removed.
+    """
+    for left in directory.glob(f"{UNFINISHED}*-*"):
+        process = left.name.removeprefix(UNFINISHED).partition("-")[0]
+        if process.isdecimal() and not _lives(int(process)):
+            left.unlink(missing_ok=True)
+
+
+def _lives(process: int) -> bool:
+    try:
+        os.kill(process, 0)  # which does nothing to it
+    except PermissionError:
+        return True
+    except (ProcessLookupError, OverflowError):
+        return False
+    return True

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from agents.errors import InputError
+from agents.files import remove_unfinished
 from agents.validation import Checked
 from scenarios.calibration_games import (
     START,
@@ -194,6 +195,7 @@ def _open(setup: Setup, play: Play, out: Path, fresh: bool) -> Shares:
             for name in (_SHARES, TRACE):
                 (out / name).unlink(missing_ok=True)
         shares = Shares(out / _SHARES, comparable, play)
+        remove_unfinished(out)
         shares.save()
     except OSError as error:
         raise InputError("out", str(out), f"must be a writable directory ({error.strerror})") from error

@@ -17,7 +17,7 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from agents.errors import InputError
-from agents.files import whole
+from agents.files import remove_unfinished, whole
 from agents.learner import Learner
 from agents.policies import Setting, deal, make_policy
 from agents.rewards import WLU, Reward
@@ -259,6 +259,8 @@ def _row(game: Game, robot: int, whole: _Measured, without: _Measured) -> Row:
 def prepare_table(directory: Path) -> None:
     """Make sure that a table of contributions can be written to a directory, which is made if need be.
 
+    What processes that were killed have left unfinished there is removed.
+
     Raises
     ------
     InputError
@@ -272,6 +274,7 @@ def prepare_table(directory: Path) -> None:
         ours = False
     if not ours:
         raise InputError("out", str(directory), f"holds a {FILE} that is no table of kswarms")
+    remove_unfinished(directory)
 
 
 def write_table(directory: Path, rows: Sequence[Row]) -> Path:

@@ -10,6 +10,7 @@ import re
 import shlex
 import shutil
 import socket
+import time
 from collections.abc import Generator, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack, closing, contextmanager, suppress
@@ -18,10 +19,10 @@ from importlib import metadata
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import TracebackType
-from typing import Any, Final, Self
+from typing import Any, Final, Self, TextIO
 
 from agents.errors import InputError
-from agents.files import UNFINISHED
+from agents.files import UNFINISHED, remove_unfinished
 from scenarios.description import Scenario
 from scenarios.files import make_directory, write_json
 from scenarios.ledger import FILE, Ledger
@@ -33,6 +34,11 @@ MANIFEST: Final = "manifest.json"
 """Name of the file that says how the results came about."""
 LOCK: Final = "lock"
 """Name of the file whose lock a study holds."""
+
+_PATIENCE: Final = 1.0
+"""For how long those who only ask for the holder of a study are waited for (s) …"""
+_PAUSE: Final = 0.005
+"""… between two looks (s)."""
 
 _TABLES: Final = f"{UNFINISHED}tables-"
 """How the directory begins that tables are written to before they are whole."""
@@ -79,8 +85,7 @@ class Study:
             stack.enter_context(_locked(self.directory, self._command))
             for left in self.directory.glob(f"{_TABLES}*"):
                 shutil.rmtree(left, ignore_errors=True)
-            for left in self.directory.glob(f"{UNFINISHED}*-{MANIFEST}"):
-                left.unlink()
+            remove_unfinished(self.directory)
             self._ledger = stack.enter_context(Ledger(self.directory / FILE, new=True))
             self._open = stack.pop_all()
         return self
@@ -208,10 +213,8 @@ def replay_command(directory: Path, run: str) -> str:
 def holder(directory: Path) -> str:
     """Return who plays into a directory now, empty if nobody does."""
     with suppress(OSError), (directory / LOCK).open() as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return file.read().strip() or "another process"
+        if not _lock(file, fcntl.LOCK_SH):
+            return _user(file)
     return ""
 
 
@@ -219,14 +222,15 @@ def holder(directory: Path) -> str:
 def _locked(directory: Path, command: str) -> Generator[None, None, None]:
     """Hold the directory. The system lets go of it when this process ends, however it does."""
     with (directory / LOCK).open("a+") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            file.seek(0)
-            user = file.read().strip() or "another process"
-            raise InputError(
-                "out", str(directory), f"is in use by {user}; wait for it, or name another"
-            ) from None
+        patience = time.monotonic() + _PATIENCE
+        while not _lock(file, fcntl.LOCK_EX):
+            # `holder` has the lock for a moment, and shares it; a study does not.
+            if not _lock(file, fcntl.LOCK_SH) or time.monotonic() > patience:
+                raise InputError(
+                    "out", str(directory), f"is in use by {_user(file)}; wait for it, or name another"
+                )
+            fcntl.flock(file, fcntl.LOCK_UN)
+            time.sleep(_PAUSE)
         file.truncate(0)
         file.write(f"process {os.getpid()} on {socket.gethostname()} since {_now()} ({command})\n")
         file.flush()
@@ -234,6 +238,21 @@ def _locked(directory: Path, command: str) -> Generator[None, None, None]:
             yield
         finally:
             file.truncate(0)
+
+
+def _lock(file: TextIO, kind: int) -> bool:
+    """Lock a file, or tell that others have a lock that does not allow it."""
+    try:
+        fcntl.flock(file, kind | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
+
+
+def _user(file: TextIO) -> str:
+    """Return who says in a lock file to hold it."""
+    file.seek(0)
+    return file.read().strip() or "another process"
 
 
 def _make(directory: Path) -> None:

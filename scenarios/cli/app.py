@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from typing import Annotated, Any, Final
 
 import typer
+from pydantic import ValidationError
 
 from agents.errors import InputError
 from scenarios.cli.calibrate import calibrate
@@ -62,11 +63,25 @@ def invoke(arguments: Sequence[str] | None = None) -> int:
         return _complain(str(error), 1)
     except OSError as error:
         return _complain(str(error), 1)
-    except typer.TyperException as error:  # typer's own complaints: an unknown command or option, no number
+    except typer.BadParameter as error:
+        return _complain(_refusal(error), 2)
+    except typer.TyperException as error:  # typer's own complaints: an unknown command or option, say
         return _complain(error.format_message(), error.exit_code)
     if code == INTERRUPTED:
         return _complain("interrupted", code)
     return code or 0
+
+
+def _refusal(error: typer.BadParameter) -> str:
+    """Tell the option, its value and what is allowed, as all input is refused; typer leaves the value out."""
+    cause = error.__cause__
+    if not isinstance(cause, ValidationError) or error.param is None:
+        return error.format_message()
+    found = InputError.from_validation(cause, ())
+    field = error.param.opts[-1].lstrip("-").replace("-", "_")
+    # Of a choice, typer says the value itself.
+    allowed = found.allowed.removeprefix(f"Value error, {found.value!r} ").removesuffix(".")
+    return str(InputError(field, found.value, allowed))
 
 
 def _complain(message: str, status: int) -> int:

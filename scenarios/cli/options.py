@@ -51,11 +51,11 @@ def directory(text: str) -> Path:
 
     Raises
     ------
-    typer.BadParameter
+    InputError
         If it is empty, as of a variable that a shell does not know; it would mean the current directory.
     """
     if not text:
-        raise typer.BadParameter("'': must be the path of a directory")
+        raise InputError("out", text, "must be the path of a directory")
     return Path(text)
 
 

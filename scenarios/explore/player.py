@@ -99,8 +99,6 @@ class Player:
     seed : int
     model : GameModel
         The game as it stands; another object after `seek` has wound back.
-    history : list of Sample
-        The curves so far.
     conflicts : deque of ConflictAccount
         The last that have closed, `MOST_CONFLICTS` at most, in the order in which they did.
 
@@ -124,7 +122,7 @@ class Player:
         self.conflicts: deque[ConflictAccount] = deque(maxlen=MOST_CONFLICTS)
         self._interval = self.model.habits.periods(FIRST_INTERVAL)
         self._steps = 0
-        self.history = [self._sample()]
+        self._history = [self._sample()]
 
     def close(self) -> None:
         """Let the game go."""
@@ -165,6 +163,12 @@ class Player:
                 tuple(self.model.pucks),
             )
 
+    @property
+    def history(self) -> list[Sample]:
+        """The curves so far; playing on does not change what is given."""
+        with self._lock:
+            return self._history.copy()
+
     def look_into(self, robot: int) -> RobotView | None:
         """Return what can be seen of a robot now, by its number; None if it is absent."""
         with self._lock:
@@ -184,12 +188,19 @@ class Player:
         ----------
         time : float
             Since the measured game began; negative for an instant of the learning (s).
+
+        Raises
+        ------
+        InputError
+            If it winds back and the game cannot be played any more, as files that it needs have changed; then
+            it stands where it was.
         """
         with self._lock:
             target = round((time + self.begin) / self.game.parameters.period)
             if target < self._steps:
-                self.close()
+                before = self.model
                 self._start()
+                before.forget()
             self._play_to(target)
 
     def to_next_conflict(self, robot: int) -> None:
@@ -229,10 +240,10 @@ class Player:
     def _keep(self) -> None:
         """Take a sample, and the conflicts since the last."""
         self.conflicts.extend(self._accounts.take())
-        self.history.append(self._sample())
-        if len(self.history) > MOST_SAMPLES:
+        self._history.append(self._sample())
+        if len(self._history) > MOST_SAMPLES:
             self._interval *= 2
-            self.history = self.history[::2]
+            self._history = self._history[::2]
 
     def _sample(self) -> Sample:
         model = self.model

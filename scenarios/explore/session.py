@@ -80,6 +80,7 @@ class Session:
         self.show_sensors = True
         self.error = ""
         self._failed = False
+        self._passing = False
         self._owed = 0.0
         if isinstance(start, Run):
             self.source = f"run {start.digest}"
@@ -192,14 +193,18 @@ class Session:
         return next(learners, robots[0].number)
 
     @contextmanager
-    def _told(self) -> Iterator[None]:
-        """Tell what goes wrong in a line instead of letting it go on."""
+    def _told(self, passing: bool = False) -> Iterator[None]:
+        """Tell what goes wrong in a line instead of letting it go on.
+
+        What is passing is told until the game goes where it is asked to; the rest, until the form is right.
+        """
         try:
             yield
         except InputError as error:
             self.error = str(error)
-        except Exception as error:  # noqa: BLE001  # a policy of the user's own may fail in any way
-            self._failed = True
+            self._passing = passing
+        except (Exception, SystemExit) as error:  # noqa: BLE001  # a policy of the user's own may fail anyhow
+            self._failed = self._passing = True
             self.error = f"the game failed: {type(error).__name__}: {error}"
 
     # Playing.
@@ -225,16 +230,21 @@ class Session:
     def reset(self) -> None:
         """Go back to the beginning, that of learning."""
         self.goal = None
-        self.player.seek(-self.player.begin)
-        if self._failed:
+        with self._told(passing=True):
+            self.player.seek(-self.player.begin)
             self._failed = False
-            self.error = ""
+            if self._passing:
+                self.error = ""
 
     def go_to(self, time: float) -> None:
         """Go to an instant as fast as can be, in `tick`s."""
-        self.goal = time
-        if time < self.player.time:
-            self.reset()
+        with self._told(passing=True):
+            if not math.isfinite(time):
+                raise InputError("t", time, "must be a finite number of seconds")
+            if time < self.player.time:
+                self.reset()
+            elif self._passing and not self._failed:
+                self.error = ""
             self.goal = time
 
     def next_conflict(self) -> None:

@@ -119,7 +119,7 @@ def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
         ("run --all --densities -1", "densities='-1': must suit some scenario"),
         ("run fig-6.1a --seeds 0", "seeds=0: "),
         ("run fig-6.1a --seeds -3", "seeds=-3: "),
-        ("run fig-6.1a --seeds 1.5", "Invalid value for '--seeds'"),
+        ("run fig-6.1a --seeds 1.5", "seeds='1.5': must be a valid integer"),
         ("run fig-6.1a --first-seed -1", "first_seed=-1: must be at least 0"),
         ("run fig-6.1a --jobs 0", "jobs=0: must be at least 1"),
         ("run fig-6.1a --record films", "record='films': must be among conflicts, robots, trajectory"),

@@ -1,6 +1,7 @@
 """The command line against odd numbers, odd titles and damaged results: one line, and nothing lost."""
 
 import os
+import re
 import sqlite3
 import sys
 from pathlib import Path
@@ -43,12 +44,9 @@ def _in_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
         ("run fig-6.1a --seeds 1000001", "seeds=1000001: must be less than or equal to 1000000"),
         ("run fig-6.1a --jobs 999999", "jobs=999999: must be at least 1, at most 1024"),
         ("run fig-6.1a --scheduler nowhere", "scheduler='nowhere': must be the address of a Dask scheduler"),
-        ("run fig-6.1a --out=", "Invalid value for '--out': '': must be the path of a directory"),
-        (
-            "contribution fig-6.1a --n 6 --out=",
-            "Invalid value for '--out': '': must be the path of a directory",
-        ),
-        ("calibrate --out=", "Invalid value for '--out': '': must be the path of a directory"),
+        ("run fig-6.1a --out=", "out='': must be the path of a directory"),
+        ("contribution fig-6.1a --n 6 --out=", "out='': must be the path of a directory"),
+        ("calibrate --out=", "out='': must be the path of a directory"),
         (
             "contribution fig-6.1a --n 6 --seeds 99999999",
             "seeds=99999999: must be at least 1, at most 1000000",
@@ -76,6 +74,23 @@ def test_a_number_or_path_out_of_range_is_one_line_and_nothing_is_written(
     assert invoke(words.split()) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"kswarms: {complaint}")
+    assert not list(Path.cwd().iterdir())
+
+
+def test_what_is_no_number_is_refused_by_every_option_that_takes_one(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    tried = set()
+    for command in ("run", "calibrate", "explore", "film", "conflicts", "contribution"):
+        assert invoke([command, "--help"]) == 0
+        for option, kind in re.findall(r"--(\S+) (<int>|<float>|K )", capsys.readouterr().out):
+            for value in ("soon", "", "1.5" if kind != "<float>" else "1,5"):
+                assert invoke([command, f"--{option}", value]) == 2
+                (line,) = capsys.readouterr().err.splitlines()
+                field, number = option.replace("-", "_"), "number" if kind == "<float>" else "integer"
+                assert line.startswith(f"kswarms: {field}={value!r}: must be a valid {number}")
+            tried.add(f"{command} --{option}")
+    assert {"run --seeds", "explore --port", "film --sheet", "conflicts --from", "calibrate --jobs"} < tried
     assert not list(Path.cwd().iterdir())
 
 

@@ -60,8 +60,8 @@ def test_help_has_an_example(capsys: pytest.CaptureFixture[str]) -> None:
         ("fig-6.4b --seeds 0", "seeds=0: must be at least 1"),
         ("fig-6.4b --first-seed -1", "first_seed=-1: must be at least 0"),
         ("fig-6.4b --jobs 0", "jobs=0: must be at least 1"),
-        ("fig-6.4b --absent-from dinner", "Invalid value for '--absent-from': "),
-        ("fig-6.4b --n x", "Invalid value for '--n': "),
+        ("fig-6.4b --absent-from dinner", "absent_from='dinner': is not one of 'learning', 'game'\n"),
+        ("fig-6.4b --n x", "n='x': must be a valid integer"),
         ("", "Missing argument 'ID'"),
     ],
 )

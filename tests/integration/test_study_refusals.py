@@ -1,9 +1,11 @@
 """What a study refuses: a directory in use or of something else, and runs that do not mix."""
 
+import fcntl
 import json
 import os
 import shutil
 import sqlite3
+import time
 from pathlib import Path
 
 import pyarrow.parquet as pq
@@ -11,10 +13,11 @@ import pytest
 
 from agents.errors import InputError
 from scenarios import runs as runs_module
+from scenarios import study as study_module
 from scenarios.cli import invoke
 from scenarios.description import Condition, SwarmRule
 from scenarios.ledger import FILE, find_run
-from scenarios.study import Study, holder
+from scenarios.study import LOCK, Study, holder
 from tests.tiny_study import RUN, TINY, contents, sessions
 
 pytestmark = pytest.mark.usefixtures("with_a_file_of_scenarios")
@@ -35,6 +38,32 @@ def test_two_sweeps_on_one_directory_do_not_meet(capsys: pytest.CaptureFixture[s
         assert f"in use by: {user}" in capsys.readouterr().out
     assert holder(Path("results")) == ""
     assert invoke(RUN) == 0
+
+
+def test_who_only_asks_for_the_user_is_waited_for_and_a_user_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    with Study(Path("results")):
+        pass
+    # What a process that was killed leaves.
+    Path("results", LOCK).write_text("process 1")
+    with Path("results", LOCK).open() as asking:
+        fcntl.flock(asking, fcntl.LOCK_SH)  # as `holder` does
+        waits = []
+
+        def wait(seconds: float) -> None:
+            waits.append(seconds)
+            if len(waits) == 3:
+                fcntl.flock(asking, fcntl.LOCK_UN)
+
+        monkeypatch.setattr(time, "sleep", wait)
+        with Study(Path("results")):
+            assert len(waits) == 3
+            with pytest.raises(InputError, match=f"is in use by process {os.getpid()} on"):
+                Study(Path("results")).__enter__()
+        assert len(waits) == 3
+        monkeypatch.setattr(study_module, "_PATIENCE", 0.0)
+        fcntl.flock(asking, fcntl.LOCK_SH)
+        with pytest.raises(InputError, match="is in use by another process"):
+            Study(Path("results")).__enter__()
 
 
 @pytest.mark.parametrize("foreign", ["runs.parquet", "policies.parquet"])

@@ -25,6 +25,8 @@ from tests.tiny_study import RUN, TINY, Fault, contents, sessions, undisturbed
 pytestmark = pytest.mark.usefixtures("with_a_file_of_scenarios")
 
 INTERRUPTED = ["kswarms: results keeps what was played; the same command goes on", "kswarms: interrupted"]
+NOBODY = 99_999_999
+"""Number that no process has."""
 KSWARMS = [sys.executable, "-m", "scenarios.cli"]
 
 
@@ -147,7 +149,9 @@ def test_tables_that_cannot_be_written_stay_as_they_were(
     assert contents("results") == whole
 
 
-@pytest.mark.parametrize("name", ["runs.parquet", "manifest.json", ".unfinished-1-manifest.json", "lock"])
+@pytest.mark.parametrize(
+    "name", ["runs.parquet", "manifest.json", f".unfinished-{NOBODY}-manifest.json", "lock"]
+)
 def test_half_a_file_is_written_anew(name: str) -> None:
     whole = undisturbed()
     assert invoke([*RUN, "--seeds", "3"]) == 0

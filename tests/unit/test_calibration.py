@@ -112,6 +112,14 @@ def test_an_interrupted_fit_goes_on_as_if_nothing_had_happened(games: int, tmp_p
     assert sorted(played) == sorted(run.digest for run in whole.runs)  # each once
 
 
+def test_what_a_killed_fit_left_is_removed_when_it_goes_on(tmp_path: Path) -> None:
+    for name in ("shares.json", "calibration.json"):
+        (tmp_path / f".unfinished-99999999-{name}").write_text("{")  # no process has this number
+    with pytest.raises(KeyboardInterrupt):
+        calibrate(TINY, TARGET, Table(stop_after=0), tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["shares.json"]
+
+
 def test_more_generations_go_on_from_fewer(tmp_path: Path) -> None:
     calibrate(TINY, TARGET, Table(), tmp_path / "grown")
     more = TINY.replace(generations=5)

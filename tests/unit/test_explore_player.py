@@ -121,6 +121,16 @@ def test_a_long_history_is_thinned_and_keeps_its_first_sample(monkeypatch: pytes
     assert times[-1] == 100.0
 
 
+def test_playing_on_does_not_change_a_history_that_was_given() -> None:
+    player = Player(LEARNING, 0)
+    given = player.history
+    before = list(given)
+    player.advance(10.0)
+    assert given == before
+    assert player.history[: len(before)] == before
+    assert len(player.history) > len(before)
+
+
 def test_a_sample_has_the_curves_of_every_swarm() -> None:
     player = Player(LEARNING, 3)
     assert player.history[0].inter == (0.0, 0.0)

@@ -1,5 +1,7 @@
 """The page without the page: what its controls and buttons do."""
 
+import math
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -11,6 +13,14 @@ from scenarios.explore.session import Session
 from scenarios.explore.views import curves_of, frame_of, scene_of
 from scenarios.runner import RunError
 from scenarios.runs import Run, digest
+
+COWARD = """
+class Coward:
+    def __init__(self, setting):
+        self.flight = setting.actions[0]
+    def choose(self, opponent):
+        return self.flight
+"""
 
 
 @pytest.fixture
@@ -128,6 +138,20 @@ def test_going_to_an_instant_needs_no_playing(session: Session, monkeypatch: pyt
     assert (session.player.time, session.player.ended) == (0.0, "")
 
 
+@pytest.mark.parametrize("time", [math.nan, math.inf, -math.inf])
+def test_an_instant_that_is_none_is_refused_until_another_is_asked_for(time: float, session: Session) -> None:
+    session.player.advance(3.0)
+    for instant in (1.0, 5.0):
+        session.go_to(time)
+        assert session.error == f"t={time}: must be a finite number of seconds"
+        assert not session.active
+        session.go_to(instant)
+        assert session.error == ""
+        while session.active:
+            session.tick(0.01)
+        assert session.player.time == instant
+
+
 def test_a_game_that_is_over_stands_still(session: Session) -> None:
     session.change(session.form._replace(duration=2.0))
     session.play()
@@ -201,16 +225,19 @@ def test_a_chart_of_no_time_yet_begins_where_its_game_does() -> None:
     assert axes() == {(-3000.0, -2940.0)}
 
 
-def test_a_game_that_fails_stops_and_says_why(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("failure", [ZeroDivisionError("by zero"), SystemExit("enough")])
+def test_a_game_that_fails_stops_and_says_why(
+    failure: BaseException, session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def choose(_opponent: int) -> None:
-        raise ZeroDivisionError("by zero")
+        raise failure
 
     for robot in session.player.model.robots:
         monkeypatch.setattr(robot.policy, "choose", choose)
     session.play()
     while session.active:
         session.tick(1.0)
-    assert session.error == "the game failed: ZeroDivisionError: by zero"
+    assert session.error == f"the game failed: {type(failure).__name__}: {failure}"
     session.go_to(500.0)
     assert not session.tick(1.0)  # a game that failed is over
     session.reset()  # with new robots
@@ -230,13 +257,7 @@ def test_a_text_that_cannot_be_read_does_not_stop_the_other_controls(session: Se
 
 def test_a_policy_of_a_file_of_ones_own_plays(session: Session, tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
-    file.write_text(
-        "class Coward:\n"
-        "    def __init__(self, setting):\n"
-        "        self.flight = setting.actions[0]\n"
-        "    def choose(self, opponent):\n"
-        "        return self.flight\n"
-    )
+    file.write_text(COWARD)
     session.change_swarm(1, policy=f"{file}:Coward")
     assert session.error == ""
     session.player.seek(60.0)
@@ -244,6 +265,37 @@ def test_a_policy_of_a_file_of_ones_own_plays(session: Session, tmp_path: Path) 
     file.write_text("class Coward:\n    pass\n")
     session.change_swarm(1, policy=f"{file}:Cowerd")
     assert "has no class Cowerd" in session.error
+
+
+@pytest.mark.parametrize("back", [Session.reset, lambda session: session.go_to(1.0)])
+def test_a_game_that_can_no_longer_be_wound_back_stays_where_it_is_until_it_can(
+    back: Callable[[Session], None], session: Session, tmp_path: Path
+) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text(COWARD)
+    session.change_swarm(1, policy=f"{file}:Coward")
+    session.player.advance(3.0)
+    file.write_text("half a th")
+    back(session)
+    assert session.error.startswith(f"policy='{file}:Coward': importing mine.py raises SyntaxError")
+    session.tick(0.0)
+    assert (session.player.time, session.active) == (3.0, False)
+    session.step()
+    assert session.player.time == pytest.approx(3.1)
+    file.write_text(COWARD)
+    back(session)
+    assert session.error == ""
+    while session.active:
+        session.tick(0.0)
+    assert session.player.time <= 1.0
+
+
+def test_winding_back_does_not_forget_a_mistake_of_the_controls(session: Session) -> None:
+    session.player.advance(3.0)
+    session.change_swarm(0, policy="atack")
+    session.reset()
+    assert session.player.time == 0.0
+    assert session.error.startswith("policy='atack'")
 
 
 def test_a_policy_that_fails_before_its_game_is_told_as_a_run_that_failed(

@@ -182,6 +182,12 @@ def test_a_table_keeps_what_is_of_other_games(tmp_path: Path) -> None:
     ]
 
 
+def test_what_a_killed_process_left_is_removed_before_a_table_is_made(tmp_path: Path) -> None:
+    (tmp_path / f".unfinished-99999999-{FILE}").write_text("half a table")  # no process has this number
+    prepare_table(tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_file_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
     for content in (b"mine", None):
         if content is None:
