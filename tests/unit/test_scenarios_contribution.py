@@ -96,8 +96,8 @@ def test_the_games_are_those_that_anybody_can_play(absent_from: Any) -> None:
 
 
 def test_the_reward_is_the_robots_own_on_all_its_conflicts_of_the_measured_game() -> None:
-    rows = {row["robot"]: row for row in contributions(GAME, [0, 6], [2])}
-    table = played(GAME, 2).tables()["conflicts"]
+    rows = {row["robot"]: row for row in contributions(GAME, [0, 6], [1])}
+    table = played(GAME, 1).tables()["conflicts"]
     conflicts = [dict(zip(table, values, strict=True)) for values in zip(*table.values(), strict=True)]
     measured = [row for row in conflicts if row["phase"] == "game"]
     for robot, swarm, reward in ((0, 1, WLU()), (6, 2, IndividualUtility(delta=0.2))):
