@@ -1,12 +1,13 @@
 """The decorator of every compiled function, and what keeps its cache honest.
 
-Numba caches a compiled function beside its source and compiles it anew when that one file changes. A
-function that was compiled into its caller can change without the caller's file, so all cached code that
-is older than any source of the packages with kernels is dropped on import.
+Numba caches a compiled function, beside its source or where it is told to, and compiles it anew when that one
+file changes. A function that was compiled into its caller can change without the caller's file, so all cached
+code that is older than any source of the packages with kernels is dropped on import.
 """
 
 import contextlib
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -22,20 +23,19 @@ def compiled(function: _Function) -> _Function:
     compiled function allocates nothing, so that numba need not count who holds which array: counting took a
     tenth of a game.
     """
-    compile_it = njit(cache=True, error_model="numpy", _nrt=False)  # type: ignore[call-overload]  # not in its stubs
-    return cast(_Function, compile_it(function))
+    compile_it = njit(cache=True, error_model="numpy", _nrt=False)(function)  # type: ignore[call-overload]  # not in its stubs
+    _drop_stale_code(Path(compile_it._cache.cache_path))
+    return cast(_Function, compile_it)
 
 
-def _drop_stale_code() -> None:
+@cache
+def _drop_stale_code(directory: Path) -> None:
+    """Drop what is cached in a directory of numba's, once in a process."""
     root = Path(__file__).parent.parent
     sources = [path for package in ("agents", "model") for path in (root / package).glob("*.py")]
     newest = max(path.stat().st_mtime for path in sources)
-    for package in ("agents", "model"):
-        for cached in (root / package / "__pycache__").glob("*.nb[ic]"):
-            # Another process may drop it first, or the installation be read-only.
-            with contextlib.suppress(OSError):
-                if cached.stat().st_mtime < newest:
-                    cached.unlink()
-
-
-_drop_stale_code()
+    for cached in directory.glob("*.nb[ic]"):
+        # Another process may drop it first, or the installation be read-only.
+        with contextlib.suppress(OSError):
+            if cached.stat().st_mtime < newest:
+                cached.unlink()
