@@ -94,6 +94,7 @@ def test_parameters_are_read_from_text(text: str, parameters: Parameters) -> Non
         ("fitted,", "parameters='': after the preset, must be name=value"),
         ("fitted, friction", "parameters='friction': after the preset, must be name=value"),
         ("fitted, mu=0.3", "mu='0.3': no such field; there are period, conflict_distance,"),
+        ("fitted, self=1", "self='1': no such field; there are period, conflict_distance,"),
         ("fitted, friction=0.1, friction=0.2", "parameters.friction='0.2': must be given once"),
         ("fitted, conflict_distance=1e300", "conflict_distance='1e300': must be less than or equal to"),
         ("fitted, friction=much", "friction='much': must be a valid number"),
