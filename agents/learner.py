@@ -63,9 +63,9 @@ class Learner:
         self.actions = setting.actions
         self._flight = next((k for k, a in enumerate(setting.actions) if a.direction == AWAY), 0)
         self._otherwise = self.actions[self._flight]
-        if otherwise:
+        if otherwise != "":
             by_name = {action.name: action for action in self.actions}
-            if otherwise not in by_name:
+            if not isinstance(otherwise, str) or otherwise not in by_name:
                 raise InputError("otherwise", otherwise, f"must be one of {', '.join(by_name)}")
             self._otherwise = by_name[otherwise]
         self._reward = make_reward(reward)
