@@ -164,11 +164,10 @@ class GameModel(mesa.Model):
         if not self._sampled_end:
             self._collect()
         self.running = False
-        # Mesa counts the agents of every model in a table of the class, and so would keep the model alive.
-        mesa.Agent._ids.pop(self, None)
+        self.forget()
 
     def forget(self) -> None:
-        """Drop what Mesa keeps of every model in a table of its class, so that this one can be freed."""
+        """Drop what Mesa counts of every model in a table of the class, so that this one can be freed."""
         mesa.Agent._ids.pop(self, None)
 
     def times(self, swarm: int) -> tuple[list[int], int]:
