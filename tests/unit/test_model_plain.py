@@ -85,7 +85,7 @@ def test_a_number_of_numpy_will_do() -> None:
         ({"shares": "7:6:5"}, "shares='7:6:5': must be 2 whole numbers"),
         ({"shares": "7:0"}, "shares='7:0': must be 2 whole numbers ≥ 1"),
         ({"shares": "7:-6"}, "shares='7:-6': "),
-        ({"shares": "7:x"}, "shares='7:x': must be whole numbers separated by ':'"),
+        ({"shares": "7:x"}, "shares='7:x': must be 2 whole numbers ≥ 1 separated by ':'"),
         ({"shares": "7:6.5"}, "shares='7:6.5': "),
         ({"n": 4, "shares": "1:100"}, "size=0: must be greater than or equal to 1"),
         ({"drives": "0.7"}, "drives='0.7': must be 2 numbers separated by ','"),
