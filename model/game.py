@@ -24,6 +24,8 @@ from model.parameters import PRESETS, Parameters
 
 MOST_PERIODS: Final = 2**53
 """No game has more, so that they can be counted."""
+MOST_ROBOTS: Final = 1_000_000
+"""No swarm has more, nor does a number of robots that is divided among swarms."""
 MOST_PUCKS: Final = 10**9
 """More are no limit."""
 LONGEST_STEP: Final = 0.8
@@ -44,7 +46,7 @@ class Swarm(Checked):
     """
 
     policy: str
-    size: int = Field(ge=1)
+    size: int = Field(ge=1, le=MOST_ROBOTS)
     drive: float = Field(0.6, gt=0, le=1)
     drive_action: float = Field(0.6, gt=0, le=1)
 
@@ -214,11 +216,18 @@ def apportion(n: int, shares: Sequence[int]) -> list[int]:
     shares : sequence of int
         Proportions, each ≥ 1.
 
+    Raises
+    ------
+    InputError
+        If there are more than `MOST_ROBOTS`.
+
     Examples
     --------
     >>> apportion(6, [1, 2, 1])
     [2, 3, 1]
     """
+    if n > MOST_ROBOTS:
+        raise InputError("n", n, f"must be at most {MOST_ROBOTS}")
     whole = sum(shares)
     sizes = [n * share // whole for share in shares]
     by_remainder = sorted(range(len(shares)), key=lambda k: -(n * shares[k] % whole))

@@ -61,6 +61,10 @@ def test_every_layout_has_an_arena(layout: str) -> None:
             {"swarms": ({"policy": "avoid", "size": 0},)},
             "swarms.0.size=0: must be greater than or equal to 1",
         ),
+        (
+            {"swarms": ({"policy": "avoid", "size": 10**400},)},
+            f"swarms.0.size={10**400}: must be less than or equal to 1000000",
+        ),
         ({"swarms": ({"policy": "avoid", "size": -3},)}, "swarms.0.size=-3: "),
         ({"swarms": ({"policy": "avoid", "size": 2.5},)}, "swarms.0.size=2.5: must be a valid integer"),
         (

@@ -75,6 +75,7 @@ def test_a_number_of_numpy_will_do() -> None:
         ({"n": 1}, "n=1: must be a whole number ≥ 2"),
         ({"n": 0}, "n=0: "),
         ({"n": -4}, "n=-4: "),
+        ({"n": 10**400}, f"n={10**400}: must be at most 1000000"),
         ({"n": 5.5}, "n=5.5: must be a whole number"),
         ({"n": math.nan}, "n=nan: "),
         ({"n": "ten"}, "n='ten': "),
