@@ -1,6 +1,6 @@
 """What a robot can do about a robot ahead of it: the open set of actions (section 2.3)."""
 
-from typing import Literal
+from typing import Final, Literal
 
 from pydantic import Field
 
@@ -8,6 +8,9 @@ from agents.validation import Checked
 
 AWAY: Literal[-1] = -1
 TOWARDS: Literal[1] = 1
+
+LONGEST: Final = 1e9
+"""No action lasts longer, nor a leg of the wandering on average, nor a sampling period (s): 30 years."""
 
 
 class Action(Checked):
@@ -26,4 +29,4 @@ class Action(Checked):
 
     name: str = Field(min_length=1)
     direction: Literal[-1, 1]
-    duration: float = Field(gt=0)
+    duration: float = Field(gt=0, le=LONGEST)

@@ -165,7 +165,7 @@ class Game(Checked):
 
     def _check_room(self) -> None:
         parameters, body, n = self.parameters, self.body_preset, self.size
-        room = (self.side - 2 * parameters.wall_clearance) ** 2
+        room = max(0.0, self.side - 2 * parameters.wall_clearance) ** 2
         if n * math.pi * (body.radius + parameters.clearance / 2) ** 2 > 0.7 * room:
             # Discs that are put down at random and parted jam when they cover about 80 % of the ground.
             raise InputError(

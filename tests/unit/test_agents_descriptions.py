@@ -24,6 +24,7 @@ class Nested(Checked):
     ("values", "message"),
     [
         ({"duration": 0}, "duration=0: must be greater than 0"),
+        ({"duration": 1e308}, "duration=1e+308: must be less than or equal to 1000000000"),
         ({"duration": -1.5}, "duration=-1.5: must be greater than 0"),
         ({"duration": math.nan}, "duration=nan: must be a finite number"),
         ({"duration": math.inf}, "duration=inf: must be a finite number"),
