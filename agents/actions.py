@@ -19,7 +19,7 @@ class Action(Checked):
     Attributes
     ----------
     name : str
-        Name by which policies ask for it.
+        Name by which policies ask for it: letters, digits, ``_``, ``.`` and ``-``.
     direction : {-1, 1}
         d of Eq. 5.5: +1 turns towards the other robot (fight), −1 towards the most vacant
         direction (flight).
@@ -27,6 +27,6 @@ class Action(Checked):
         How long the robot drives after the turn (s).
     """
 
-    name: str = Field(min_length=1)
+    name: str = Field(pattern=r"^[\w.-]+$")
     direction: Literal[-1, 1]
     duration: float = Field(gt=0, le=LONGEST)

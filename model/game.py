@@ -16,7 +16,7 @@ from agents.actions import Action
 from agents.body import BODIES, Body
 from agents.errors import InputError
 from agents.own import rehearse
-from agents.policies import Setting, make_policy, parts
+from agents.policies import ALIASES, POLICIES, Setting, make_policy, parts
 from agents.streams import Streams
 from agents.validation import Checked
 from model.arena import LAYOUTS, Arena, build_arena
@@ -127,6 +127,9 @@ class Game(Checked):
         names = [action.name for action in self.action_set]
         if len(set(names)) < len(names):
             raise InputError("actions", names, "must have different names")
+        for name in names:
+            if name in POLICIES or name in ALIASES:
+                raise InputError("actions", name, "must not have the name of a policy")
         for k, swarm in enumerate(self.swarms):
             setting = Setting(k, len(self.swarms), self.action_set, Streams(0, 0))
             for text in parts(swarm.policy):

@@ -30,7 +30,7 @@ class Nested(Checked):
         ({"duration": math.inf}, "duration=inf: must be a finite number"),
         ({"duration": "soon"}, "duration='soon': must be a valid number"),
         ({"direction": 0}, "direction=0: must be -1 or 1"),
-        ({"name": ""}, "name='': "),
+        *[({"name": name}, f"name={name!r}: ") for name in ("", "a+b", " pad ", "a,b", "x()", "f:X", "a\n")],
         ({"speed": 3}, "speed=3: no such field; there are name, direction, duration"),
     ],
 )
