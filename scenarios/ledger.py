@@ -194,6 +194,8 @@ class Ledger:
     ) -> None:
         """Enter what came out of a run that was planned.
 
+        A run that is done, and was played again for a record, stays done with its results if that fails.
+
         Parameters
         ----------
         run : Run
@@ -207,16 +209,25 @@ class Ledger:
         replay : str
             The command that plays it again.
         """
-        came_out: tuple[str | None, ...]
-        if isinstance(result, Failure):
-            status, came_out = "failed", (None, None, result.error, result.trace)
-        else:
-            status, came_out = "done", (json.dumps(result.swarms), json.dumps(result.policies), None, None)
+        told: tuple[str | None, str | None] = (None, None)
+        played = (code_version(), seconds)
         with self._transaction():
+            if isinstance(result, Failure):
+                told = (result.error, result.trace)
+                self._db.execute(
+                    "UPDATE runs SET status = 'failed', code = ?, seconds = ?"
+                    " WHERE run = ? AND status != 'done'",
+                    (*played, run.digest),
+                )
+            else:
+                self._db.execute(
+                    "UPDATE runs SET status = 'done', code = ?, seconds = ?, swarms = ?, policies = ?"
+                    " WHERE run = ?",
+                    (*played, json.dumps(result.swarms), json.dumps(result.policies), run.digest),
+                )
             self._db.execute(
-                "UPDATE runs SET status = ?, code = ?, seconds = ?, swarms = ?, policies = ?, error = ?,"
-                " traceback = ?, replay = ? WHERE run = ?",
-                (status, code_version(), seconds, *came_out, replay, run.digest),
+                "UPDATE runs SET error = ?, traceback = ?, replay = ? WHERE run = ?",
+                (*told, replay, run.digest),
             )
             self._db.executemany(
                 "INSERT OR REPLACE INTO records VALUES (?, ?, ?)",

@@ -41,10 +41,10 @@ def codes(ledger: Ledger) -> dict[str, int]:
 
 
 def failures(ledger: Ledger) -> Iterator[FailedRun]:
-    """Yield the runs that failed, each under one of its labels."""
+    """Yield the runs that failed when last played, each under one of its labels."""
     for *point, error, trace, replay in ledger.query(
         "SELECT run, MIN(scenario), condition, n, points.seed, error, traceback, replay"
-        " FROM points JOIN runs USING (run) WHERE status = 'failed'"
+        " FROM points JOIN runs USING (run) WHERE error NOT NULL"
         " GROUP BY run ORDER BY MIN(scenario), condition, n, points.seed"
     ):
         yield FailedRun(Point(*point), error, trace, replay)

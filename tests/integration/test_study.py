@@ -51,6 +51,25 @@ def test_a_run_without_the_record_asked_for_is_played_again(break_games: Callabl
     assert pq.read_table("results/robots.parquet").num_rows == 2 * 2 * (4 + 6)
 
 
+def test_a_run_that_fails_when_it_is_played_again_for_a_record_keeps_what_it_came_to(
+    break_games: Callable[[Fault], None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fault(model: GameModel) -> None:
+        if model.game.size == 6:
+            raise MemoryError("too much to record")
+
+    plain = RUN[: RUN.index("--record")]
+    assert invoke([*plain, "--seeds", "1"]) == 0
+    before = Path("results/runs.parquet").read_bytes()
+    break_games(fault)
+    capsys.readouterr()
+    assert invoke([*RUN, "--seeds", "1"]) == 1
+    assert "2 of 4 runs failed" in capsys.readouterr().err
+    assert Path("results/runs.parquet").read_bytes() == before
+    assert invoke(["status", "results"]) == 0
+    assert "MemoryError: too much to record" in capsys.readouterr().out
+
+
 def test_a_failed_run_is_a_row_and_its_command_replays_it(
     break_games: Callable[[Fault], None], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
