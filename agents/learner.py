@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 from numpy.random import Generator
 
-from agents.actions import AWAY, Action
+from agents.actions import Action
 from agents.bandit import Bandit
 from agents.errors import InputError
+from agents.learned import flight
 from agents.rewards import Reward, make_reward
 from agents.selection import make_rule
 from agents.streams import Purpose
@@ -61,11 +62,10 @@ class Learner:
             raise InputError("about", about, "must be inter, intra or both")
         self.swarm = setting.swarm
         self.actions = setting.actions
-        self._flight = next((k for k, a in enumerate(setting.actions) if a.direction == AWAY), 0)
-        self._otherwise = self.actions[self._flight]
-        if otherwise:
+        self._flight = self._otherwise = flight(setting.actions)
+        if otherwise != "":
             by_name = {action.name: action for action in self.actions}
-            if otherwise not in by_name:
+            if not isinstance(otherwise, str) or otherwise not in by_name:
                 raise InputError("otherwise", otherwise, f"must be one of {', '.join(by_name)}")
             self._otherwise = by_name[otherwise]
         self._reward = make_reward(reward)
@@ -141,7 +141,7 @@ class Learner:
     def learned(self, opponent: int) -> Action:
         """Return argmax Q for a swarm learned about; flight where nothing is known."""
         best = self.bandits[opponent].best()
-        return self.actions[self._flight if best is None else best]
+        return self._flight if best is None else self.actions[best]
 
     def freeze(self) -> None:
         """Stop learning."""

@@ -127,9 +127,12 @@ def _split(field: str, reference: str) -> tuple[str, str]:
 
 def _module_of(field: str, reference: str, where: str) -> ModuleType:
     if where.endswith(".py"):
-        path = Path(where).resolve()
+        path = Path(where)
         try:
+            path = path.resolve()
             source = path.read_bytes()
+        except ValueError as error:  # of a NUL, which is not printed
+            raise InputError(field, reference, f"must name a file ({error})") from None
         except OSError as error:
             reason = error.strerror or "unreadable"
             raise InputError(field, reference, f"must name a file; {path}: {reason}") from None

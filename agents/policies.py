@@ -181,7 +181,8 @@ POLICIES: Final[dict[str, Kind]] = {
 }
 """Every kind of policy by its name."""
 
-_ALIASES: Final = {"mixed": "avoid+aggressive"}
+ALIASES: Final = {"mixed": "avoid+aggressive"}
+"""Names that stand for several policies."""
 
 
 def make_policy(text: str, setting: Setting) -> Policy:
@@ -207,13 +208,15 @@ def make_policy(text: str, setting: Setting) -> Policy:
     call = parse_call("policy", text)
     if call.name in (action.name for action in setting.actions):
         raise InputError("policy", text, "an action takes no arguments")
+    if call.name in ALIASES:
+        raise InputError("policy", text, f"stands for {ALIASES[call.name]}, and takes no arguments")
     if is_reference(call.name):
         kind = Kind(own.policy_class(call))
     elif call.name in POLICIES:
         kind = POLICIES[call.name]
         require_known("policy", call, kind.arguments)
     else:
-        known = ", ".join([*POLICIES, *_ALIASES, *(action.name for action in setting.actions)])
+        known = ", ".join([*POLICIES, *ALIASES, *(action.name for action in setting.actions)])
         raise InputError(
             *("policy", call.name),
             f"must be one of {known}, or several joined by '+', or a class as my_file.py:MyPolicy",
@@ -232,7 +235,7 @@ def deal(policy: str, size: int) -> list[str]:
     ----------
     policy : str
         A policy for all, or several joined by ``+``: equal shares in that order, the robots
-        that are left over going to the first. ``mixed`` is ``avoid+aggressive``.
+        that are left over going to the first. ``mixed`` is ``avoid+aggressive``, among others too.
     size : int
         Robots in the swarm.
 
@@ -245,6 +248,8 @@ def deal(policy: str, size: int) -> list[str]:
     --------
     >>> deal("mixed", 5)
     ['avoid', 'avoid', 'avoid', 'aggressive', 'aggressive']
+    >>> deal("attack+mixed", 3)
+    ['attack', 'avoid', 'aggressive']
     """
     names = parts(policy)
     share, extra = divmod(size, len(names))
@@ -253,7 +258,9 @@ def deal(policy: str, size: int) -> list[str]:
 
 def parts(policy: str) -> list[str]:
     """Return the policies that are dealt out under one name."""
-    return split_outside(_ALIASES.get(policy, policy), "+")
+    return [
+        name for text in split_outside(policy, "+") for name in split_outside(ALIASES.get(text, text), "+")
+    ]
 
 
 def describe(policy: Policy) -> list[dict[str, Any]]:

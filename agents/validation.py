@@ -24,7 +24,8 @@ class Checked(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
-    def __init__(self, **values: Any) -> None:
+    # `/`, so that a user's field of the name self is one that there is not.
+    def __init__(self, /, **values: Any) -> None:
         try:
             super().__init__(**values)
         except ValidationError as error:
@@ -40,6 +41,6 @@ class Checked(BaseModel):
                 raise InputError(name, value, "must be a number")
         return values
 
-    def replace(self, **changes: Any) -> Self:
+    def replace(self, /, **changes: Any) -> Self:
         """Return a copy with some fields changed, checked like a new one."""
         return type(self)(**{**dict(self), **changes})

@@ -16,6 +16,7 @@ import simpy
 from simpy.core import StopSimulation
 from simpy.events import Event
 
+from agents.actions import LONGEST
 from agents.errors import InputError
 from agents.habits import Conflict, Habits
 from agents.krembot import Krembot
@@ -75,8 +76,10 @@ class GameModel(mesa.Model):
     def __init__(self, game: Game, seed: int = 0, record: str = "", sample_period: float = 10.0) -> None:
         if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
             raise InputError("seed", seed, "must be a whole number ≥ 0")
-        if not isinstance(sample_period, float | int | np.number) or not 0 < sample_period < math.inf:
-            raise InputError("sample_period", sample_period, "must be a number of seconds > 0")
+        if not isinstance(sample_period, float | int | np.number) or not 0 < sample_period <= LONGEST:
+            raise InputError(
+                "sample_period", sample_period, f"must be a number of seconds > 0, ≤ {LONGEST:g}"
+            )
         recorded = recording.parse_record(record)
         super().__init__(seed=int(seed))
         self.game = game
@@ -164,11 +167,10 @@ class GameModel(mesa.Model):
         if not self._sampled_end:
             self._collect()
         self.running = False
-        # Mesa counts the agents of every model in a table of the class, and so would keep the model alive.
-        mesa.Agent._ids.pop(self, None)
+        self.forget()
 
     def forget(self) -> None:
-        """Drop what Mesa keeps of every model in a table of its class, so that this one can be freed."""
+        """Drop what Mesa counts of every model in a table of the class, so that this one can be freed."""
         mesa.Agent._ids.pop(self, None)
 
     def times(self, swarm: int) -> tuple[list[int], int]:

@@ -16,7 +16,7 @@ from agents.actions import Action
 from agents.body import BODIES, Body
 from agents.errors import InputError
 from agents.own import rehearse
-from agents.policies import Setting, make_policy, parts
+from agents.policies import ALIASES, POLICIES, Setting, make_policy, parts
 from agents.streams import Streams
 from agents.validation import Checked
 from model.arena import LAYOUTS, Arena, build_arena
@@ -24,6 +24,8 @@ from model.parameters import PRESETS, Parameters
 
 MOST_PERIODS: Final = 2**53
 """No game has more, so that they can be counted."""
+MOST_ROBOTS: Final = 1_000_000
+"""No swarm has more, nor does a number of robots that is divided among swarms."""
 MOST_PUCKS: Final = 10**9
 """More are no limit."""
 LONGEST_STEP: Final = 0.8
@@ -44,7 +46,7 @@ class Swarm(Checked):
     """
 
     policy: str
-    size: int = Field(ge=1)
+    size: int = Field(ge=1, le=MOST_ROBOTS)
     drive: float = Field(0.6, gt=0, le=1)
     drive_action: float = Field(0.6, gt=0, le=1)
 
@@ -125,6 +127,9 @@ class Game(Checked):
         names = [action.name for action in self.action_set]
         if len(set(names)) < len(names):
             raise InputError("actions", names, "must have different names")
+        for name in names:
+            if name in POLICIES or name in ALIASES:
+                raise InputError("actions", name, "must not have the name of a policy")
         for k, swarm in enumerate(self.swarms):
             setting = Setting(k, len(self.swarms), self.action_set, Streams(0, 0))
             for text in parts(swarm.policy):
@@ -163,7 +168,7 @@ class Game(Checked):
 
     def _check_room(self) -> None:
         parameters, body, n = self.parameters, self.body_preset, self.size
-        room = (self.side - 2 * parameters.wall_clearance) ** 2
+        room = max(0.0, self.side - 2 * parameters.wall_clearance) ** 2
         if n * math.pi * (body.radius + parameters.clearance / 2) ** 2 > 0.7 * room:
             # Discs that are put down at random and parted jam when they cover about 80 % of the ground.
             raise InputError(
@@ -214,11 +219,18 @@ def apportion(n: int, shares: Sequence[int]) -> list[int]:
     shares : sequence of int
         Proportions, each ≥ 1.
 
+    Raises
+    ------
+    InputError
+        If there are more than `MOST_ROBOTS`.
+
     Examples
     --------
     >>> apportion(6, [1, 2, 1])
     [2, 3, 1]
     """
+    if n > MOST_ROBOTS:
+        raise InputError("n", n, f"must be at most {MOST_ROBOTS}")
     whole = sum(shares)
     sizes = [n * share // whole for share in shares]
     by_remainder = sorted(range(len(shares)), key=lambda k: -(n * shares[k] % whole))

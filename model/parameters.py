@@ -5,12 +5,16 @@ from typing import Final, Literal
 
 from pydantic import Field
 
-from agents.actions import AWAY, TOWARDS, Action
+from agents.actions import AWAY, LONGEST, TOWARDS, Action
 from agents.errors import InputError
 from agents.validation import Checked
 
 FARTHEST: Final = 10_000.0
-"""No sense reaches farther (m): as far as the side of the largest arena."""
+"""No sense reaches farther, nor are robots put farther apart (m): as far as the side of the largest arena."""
+SHORTEST_PERIOD: Final = 1e-6
+"""Less (s) would only make more periods of everything, until they cannot be counted."""
+SLOWEST_TURN: Final = 1e-9
+"""Turning more slowly (rad/s), a robot would take a century to turn about."""
 
 
 class Parameters(Checked):
@@ -60,15 +64,15 @@ class Parameters(Checked):
         Whether another robot ahead interrupts an action.
     """
 
-    period: float = Field(0.1, gt=0, le=1)
+    period: float = Field(0.1, ge=SHORTEST_PERIOD, le=1)
     conflict_distance: float = Field(0.1718, gt=0, le=FARTHEST)
     front_half_angle: float = Field(math.radians(62.5), gt=0, le=math.pi)
-    flight_duration: float = Field(1.619, gt=0)
-    fight_duration: float = Field(1.0, gt=0)
-    turning_rate: float = Field(2.96, gt=0)
+    flight_duration: float = Field(1.619, gt=0, le=LONGEST)
+    fight_duration: float = Field(1.0, gt=0, le=LONGEST)
+    turning_rate: float = Field(2.96, ge=SLOWEST_TURN)
     flight_range: float = Field(0.46, gt=0, le=FARTHEST)
     active_range: float = Field(0.2467, gt=0, le=FARTHEST)
-    leg_mean: float = Field(6.7, gt=0)
+    leg_mean: float = Field(6.7, gt=0, le=LONGEST)
     wander_turn: float = Field(math.radians(86), gt=0, le=math.pi)
     wall_distance: float = Field(0.06, gt=0, le=FARTHEST)
     wall_half_angle: float = Field(0.0, ge=0, lt=math.pi / 2)
@@ -78,8 +82,8 @@ class Parameters(Checked):
     base_range: float = Field(0.82, gt=0, le=FARTHEST)
     friction: float = Field(0.1596, ge=0)
     push_share: float = Field(0.0, ge=0, le=1)
-    clearance: float = Field(0.01, ge=0)
-    wall_clearance: float = Field(0.005, ge=0)
+    clearance: float = Field(0.01, ge=0, le=FARTHEST)
+    wall_clearance: float = Field(0.005, ge=0, le=FARTHEST)
     preempt: bool = False
 
     def actions(self) -> tuple[Action, Action]:

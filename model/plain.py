@@ -80,7 +80,10 @@ class ForagingModel(GameModel):
 
 def _swarms(n: int, policies: str, shares: str, drives: str) -> tuple[Swarm, ...]:
     names = split_outside(policies, ",")
-    parts = _numbers("shares", shares, ":", int) if shares else [1] * len(names)
+    try:
+        parts = [int(part) for part in shares.split(":")] if shares else [1] * len(names)
+    except ValueError:
+        parts = []
     if len(parts) != len(names) or min(parts) < 1:
         raise InputError("shares", shares, f"must be {len(names)} whole numbers ≥ 1 separated by ':'")
     pairs = (
@@ -95,10 +98,3 @@ def _swarms(n: int, policies: str, shares: str, drives: str) -> tuple[Swarm, ...
         Swarm(policy=name, size=size, drive=drive, drive_action=drive_action or 0.6)
         for name, size, (drive, _, drive_action) in zip(names, sizes, pairs, strict=True)
     )
-
-
-def _numbers(field: str, text: str, separator: str, kind: type[int]) -> list[int]:
-    try:
-        return [kind(part) for part in text.split(separator)]
-    except ValueError:
-        raise InputError(field, text, f"must be whole numbers separated by '{separator}'") from None

@@ -20,11 +20,11 @@ from pydantic import Field, model_validator
 
 from agents.errors import InputError
 from agents.files import remove_unfinished
+from agents.fleet import Floats
 from agents.validation import Checked
 from scenarios.calibration_games import (
     START,
     Cell,
-    Floats,
     Play,
     Point,
     Shares,
@@ -32,6 +32,7 @@ from scenarios.calibration_games import (
     to_place,
     to_point,
 )
+from scenarios.description import DENSITIES
 from scenarios.files import make_directory, write_json
 
 SPREAD: Final = 0.15
@@ -71,7 +72,7 @@ class Setup(Checked):
     """
 
     free: tuple[str, ...] = tuple(START)
-    densities: tuple[int, ...] = Field((6, 10, 16, 20, 26, 30, 36, 40, 46, 50), min_length=1)
+    densities: tuple[int, ...] = Field(DENSITIES, min_length=1)
     seeds: int = Field(4, ge=1, le=1000)
     generations: int = Field(25, ge=1, le=10_000)
     population: int = Field(0, ge=0, le=10_000)

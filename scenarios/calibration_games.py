@@ -9,16 +9,16 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from agents.errors import InputError
+from agents.fleet import Floats
 from agents.selection import UCB
 from model.game import Game, Swarm
 from model.parameters import PRESETS, parse_parameters
+from scenarios.description import LEARNING
 from scenarios.files import write_json
 from scenarios.runs import Run, digest
 
-Floats = NDArray[np.float64]
 Point = dict[str, float]
 """A value for each free parameter, by name."""
 Cell = tuple[str, int]
@@ -43,8 +43,6 @@ SPAN: Final = 2.0
 """A parameter is searched from its start value / 2 to its start value × 2, on a logarithmic scale …"""
 LIMITS: Final = {"base_radius": 0.2, "push_share": 0.5}
 """… or up to a limit: where the base meets the wall (m), and for what starts at 0, on a linear scale."""
-LEARNING: Final = 3000.0
-"""Time to learn (s)."""
 _SAVE_EVERY: Final = 5.0
 """Games are worth this much time of play at most before they are saved (s)."""
 

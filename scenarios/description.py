@@ -22,6 +22,9 @@ DENSITIES: Final = (6, 10, 16, 20, 26, 30, 36, 40, 46, 50)
 SEEDS: Final = 20
 """Games for each density, unless a scenario says otherwise (section 3.1)."""
 
+LEARNING: Final = 3000.0
+"""Time for which a learner learns before the game that is measured (s, section 3.1)."""
+
 MOST_SEEDS: Final = 1_000_000
 """Games for a density at most."""
 LONGEST_NAME: Final = 100

@@ -6,10 +6,7 @@ from typing import Any, Final
 from agents.rewards import REWARDS
 from agents.selection import RULES
 from agents.validation import Checked
-from scenarios.description import Condition, SwarmRule
-
-LEARNING: Final = 3000.0
-"""Time for which a learner learns before the game that is measured (s, section 3.1)."""
+from scenarios.description import LEARNING, Condition, SwarmRule
 
 _LEARNS_BY: Final = {"reward": "wlu", "rule": "ucb"}
 

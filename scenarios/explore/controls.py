@@ -8,7 +8,7 @@ import solara
 
 from agents.body import BODIES
 from agents.errors import InputError
-from agents.policies import POLICIES
+from agents.policies import ALIASES, POLICIES
 from agents.rewards import REWARDS
 from agents.selection import RULES
 from model.arena import LAYOUTS
@@ -30,7 +30,7 @@ _SLIDERS: Final = {
 }
 """Parameters of the world that have a slider: label; least, greatest, step."""
 _DRIVE: Final = (0.05, 1.0, 0.05)
-_KNOWN_POLICIES: Final = [name for name in POLICIES if name != "learned"] + ["mixed"]
+_KNOWN_POLICIES: Final = [name for name in (*POLICIES, *ALIASES) if name != "learned"]
 
 
 @solara.component

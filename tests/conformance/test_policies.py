@@ -108,6 +108,9 @@ def test_a_policy_needs_actions_of_its_directions(name: str, actions: tuple[Acti
         ("mixed", 1, "avoid"),
         ("mixed", 2, "avoid aggressive"),
         ("mixed", 5, "avoid avoid avoid aggressive aggressive"),
+        (" mixed", 2, "avoid aggressive"),
+        ("attack+mixed", 5, "attack attack avoid avoid aggressive"),
+        ("mixed + avoid", 3, "avoid aggressive avoid"),
         ("avoid+aggressive", 5, "avoid avoid avoid aggressive aggressive"),
         ("aggressive+avoid", 3, "aggressive aggressive avoid"),
         ("attack+avoid+fight", 5, "attack attack avoid avoid fight"),
@@ -116,9 +119,16 @@ def test_a_policy_needs_actions_of_its_directions(name: str, actions: tuple[Acti
 )
 def test_a_swarm_is_dealt_equal_shares_and_the_rest_to_the_first(policy: str, size: int, dealt: str) -> None:
     assert deal(policy, size) == dealt.split()
+    Game(swarms=(Swarm(policy=policy, size=max(1, size)),))
 
 
 @pytest.mark.parametrize("policy", ["", "Avoid", "avoid,attack", "avoid+", "avoid+peace", "leaner"])
 def test_unknown_policies_are_refused(policy: str) -> None:
     with pytest.raises(InputError, match=r"policy='[^']*': must be one of avoid, attack, aggressive, random"):
+        Game(swarms=(Swarm(policy=policy, size=2),))
+
+
+@pytest.mark.parametrize("policy", ["mixed()", "avoid+mixed(of=2)"])
+def test_a_name_for_several_policies_takes_no_arguments(policy: str) -> None:
+    with pytest.raises(InputError, match=r"^policy='mixed\(.*\)': stands for avoid\+aggressive, and"):
         Game(swarms=(Swarm(policy=policy, size=2),))

@@ -42,6 +42,8 @@ def _in_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
             f"first_seed=99999999999999999999: must be at least 0, at most {MOST}",
         ),
         ("run fig-6.1a --seeds 1000001", "seeds=1000001: must be less than or equal to 1000000"),
+        (f"run fig-6.1a --densities 6,{10**400}", f"n={10**400}: must be at most 1000000 (fig-6.1a)"),
+        (f"film fig-6.1a --n {10**400}", f"n={10**400}: must be at most 1000000"),
         ("run fig-6.1a --jobs 999999", "jobs=999999: must be at least 1, at most 1024"),
         ("run fig-6.1a --scheduler nowhere", "scheduler='nowhere': must be the address of a Dask scheduler"),
         ("run fig-6.1a --out=", "out='': must be the path of a directory"),

@@ -24,12 +24,13 @@ class Nested(Checked):
     ("values", "message"),
     [
         ({"duration": 0}, "duration=0: must be greater than 0"),
+        ({"duration": 1e308}, "duration=1e+308: must be less than or equal to 1000000000"),
         ({"duration": -1.5}, "duration=-1.5: must be greater than 0"),
         ({"duration": math.nan}, "duration=nan: must be a finite number"),
         ({"duration": math.inf}, "duration=inf: must be a finite number"),
         ({"duration": "soon"}, "duration='soon': must be a valid number"),
         ({"direction": 0}, "direction=0: must be -1 or 1"),
-        ({"name": ""}, "name='': "),
+        *[({"name": name}, f"name={name!r}: ") for name in ("", "a+b", " pad ", "a,b", "x()", "f:X", "a\n")],
         ({"speed": 3}, "speed=3: no such field; there are name, direction, duration"),
     ],
 )

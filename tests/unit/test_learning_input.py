@@ -23,6 +23,8 @@ WRONG = [
     ("learner(about=inter)", "policy", "'learner(about=inter)'", "name(key=value, …)"),
     ("learner(about='others')", "policy.about", "'others'", "inter, intra or both"),
     ("learner(otherwise='hide')", "policy.otherwise", "'hide'", "flight, fight"),
+    ("learner(otherwise=['flight'])", "policy.otherwise", "['flight']", "flight, fight"),
+    ("learner(otherwise=0)", "policy.otherwise", "0", "flight, fight"),
     ("learner(reward='wul')", "policy.reward", "'wul'", "wlu, individual, single-swarm"),
     ("learner(reward=0.125)", "policy.reward", "0.125", ""),
     ("learner(rule='ucb2')", "policy.rule", "'ucb2'", "ucb, discounted-ucb, greedy"),

@@ -7,9 +7,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from agents.actions import LONGEST
 from agents.theory.swarms import swarm_utility_difference
 from model.foraging import GameModel
 from model.game import Game, Swarm
+from model.parameters import PRESETS, SHORTEST_PERIOD, SLOWEST_TURN
 from model.plain import ForagingModel
 from model.recording import RECORDS, parse_record
 
@@ -34,6 +36,16 @@ def test_it_is_a_mesa_model_of_robots_in_a_continuous_space() -> None:
     assert [robot.policy_name for robot in model.members[2]] == ["avoid", "avoid", "aggressive"]
     assert model.space.dimensions.tolist() == [[-1, 1], [-1, 1]]
     assert not model.space.torus
+
+
+def test_what_the_limits_of_the_parameters_allow_can_be_played() -> None:
+    times = dict.fromkeys(("flight_duration", "fight_duration", "leg_mean"), LONGEST)
+    for rest in ({"turning_rate": SLOWEST_TURN}, {"turning_rate": 1e308}, {"leg_mean": 1e-308}):
+        slow = PRESETS["fitted"].replace(period=SHORTEST_PERIOD, conflict_distance=0.5, **(times | rest))
+        model = GameModel(GAME.replace(parameters=slow, duration=1e-4), 2, "robots", LONGEST)
+        model.play()
+        assert model.ended == "time"
+        assert sum(sum(robot.conflicts) for robot in model.robots) > 0
 
 
 def test_positions_are_the_kernels_own_memory() -> None:

@@ -47,6 +47,13 @@ def test_actions_of_its_own_replace_the_standard_ones() -> None:
     assert game(actions=(dash,), swarms=(Swarm(policy="dash", size=2),)).action_set == (dash,)
 
 
+@pytest.mark.parametrize("name", ["attack", "learner", "mixed"])
+def test_no_action_has_the_name_of_a_policy(name: str) -> None:
+    dash, ram = Action(name="dash", direction=-1, duration=0.05), Action(name=name, direction=1, duration=2.0)
+    with pytest.raises(InputError, match=f"^actions='{name}': must not have the name of a policy$"):
+        game(actions=(dash, ram))
+
+
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_every_layout_has_an_arena(layout: str) -> None:
     arena = game(layout=layout).arena(3)
@@ -60,6 +67,10 @@ def test_every_layout_has_an_arena(layout: str) -> None:
         (
             {"swarms": ({"policy": "avoid", "size": 0},)},
             "swarms.0.size=0: must be greater than or equal to 1",
+        ),
+        (
+            {"swarms": ({"policy": "avoid", "size": 10**400},)},
+            f"swarms.0.size={10**400}: must be less than or equal to 1000000",
         ),
         ({"swarms": ({"policy": "avoid", "size": -3},)}, "swarms.0.size=-3: "),
         ({"swarms": ({"policy": "avoid", "size": 2.5},)}, "swarms.0.size=2.5: must be a valid integer"),

@@ -94,6 +94,7 @@ def test_parameters_are_read_from_text(text: str, parameters: Parameters) -> Non
         ("fitted,", "parameters='': after the preset, must be name=value"),
         ("fitted, friction", "parameters='friction': after the preset, must be name=value"),
         ("fitted, mu=0.3", "mu='0.3': no such field; there are period, conflict_distance,"),
+        ("fitted, self=1", "self='1': no such field; there are period, conflict_distance,"),
         ("fitted, friction=0.1, friction=0.2", "parameters.friction='0.2': must be given once"),
         ("fitted, conflict_distance=1e300", "conflict_distance='1e300': must be less than or equal to"),
         ("fitted, friction=much", "friction='much': must be a valid number"),
@@ -126,14 +127,27 @@ def test_zero_is_refused_where_it_makes_no_sense(name: str) -> None:
     if name in MAY_BE_ZERO:
         assert getattr(Parameters(**{name: 0.0}), name) == 0.0
     else:
-        with pytest.raises(InputError, match=f"^{name}=0.0: must be greater than 0"):
+        with pytest.raises(InputError, match=f"^{name}=0.0: must be greater than "):
             Parameters(**{name: 0.0})
 
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("push_share", 1.01), ("front_half_angle", 3.2), ("wander_turn", 3.2), ("wall_half_angle", 1.6)],
+    [
+        *[("push_share", 1.01), ("front_half_angle", 3.2), ("wander_turn", 3.2), ("wall_half_angle", 1.6)],
+        *[("flight_duration", 1.1e9), ("fight_duration", 1.1e9), ("leg_mean", 1.1e9)],
+        *[("clearance", 10_001.0), ("wall_clearance", 10_001.0)],
+    ],
 )
 def test_a_number_above_its_range_is_refused(name: str, value: float) -> None:
     with pytest.raises(InputError, match=f"^{name}={value}: must be less than"):
         Parameters(**{name: value})
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "least"), [("period", 9e-7, "0.000001"), ("turning_rate", 1e-320, "0.000000001")]
+)
+def test_a_number_below_its_range_is_refused(name: str, value: float, least: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        Parameters(**{name: value})
+    assert str(refusal.value) == f"{name}={value}: must be greater than or equal to {least}"

@@ -100,6 +100,7 @@ def test_a_game_has_everything_its_condition_says() -> None:
         ({"densities": ()}, "densities"),
         ({"densities": (6, 7)}, "n"),
         ({"densities": (1000, 6)}, "n"),
+        ({"densities": (6, 10**400)}, "n"),
         ({"densities": (6.5,)}, "densities.0"),
         ({"conditions": ()}, "conditions"),
         ({"conditions": (with_shares(1, 1), with_shares(1, 1))}, "conditions"),

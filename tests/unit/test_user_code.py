@@ -63,6 +63,8 @@ def at(code: str) -> str:
 
 WRONG = [
     ("no.py:X", "policy='no.py:X': must name a file; ", "no.py: No such file or directory"),
+    ("my\0own.py:X", "policy='my\\x00own.py:X': must name a file (", ")"),
+    ("learner(reward='my\\0own.py:X')", "policy.reward='my\\x00own.py:X': must name a file (", ")"),
     ("own.py:Cautio", "policy='own.py:Cautio': own.py has no class Cautio; there are Cautious, Needy", ""),
     ("own.py:NUMBER", "policy='own.py:NUMBER': own.py has no class NUMBER; there are", ""),
     ("own.py:", "policy='own.py:': must be path/to/my_file.py:MyClass or package.module:MyClass", ""),
