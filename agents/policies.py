@@ -71,8 +71,8 @@ class Policy(Protocol):
 class LearningPolicy(Policy, Protocol):
     """A policy that is told how its conflicts ended, until the measured game begins.
 
-    If it also has a method ``snapshot``, which returns what `Learner.snapshot` does, then what it learned is
-    recorded and can be saved.
+    Without a learning phase it is told throughout that game. If it also has a method ``snapshot``, which
+    returns what `Learner.snapshot` does, then what it learned is recorded and can be saved.
     """
 
     def learn(self, t_a: float, t_p: float, n_active: int) -> tuple[float, float]:

@@ -69,7 +69,8 @@ class Game(Checked):
     side : float
         Side of the arena (m); the layouts, given for 2 m, scale with it.
     learning : float
-        Time for which learners learn before the measured game, in the same world (s).
+        Time for which learners learn before the measured game, in the same world (s); with 0 they learn in
+        the measured game itself.
     duration : float
         Length of the measured game, or the longest it may take if there is a puck limit (s).
     puck_limit : int, optional

@@ -69,7 +69,7 @@ class Condition(Checked):
     actions : tuple of Action
         What robots can do; empty for flight and fight as the parameters have them.
     learning : float
-        Time for which learners learn before the game (s); 0 for swarms that do not learn.
+        Time for which learners learn before the game (s); with 0 they learn in the game itself.
     duration : float
         Length of the game (s), the limit if it is played for pucks.
     puck_limit, supply : int, optional
