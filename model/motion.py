@@ -68,6 +68,11 @@ def advance(
     -------
     tick, size : int
         The period reached, and the number of events; with none, it is `until`.
+
+    Raises
+    ------
+    ValueError
+        If bodies overlap that nothing parts.
     """
     heading, turn_rate = robots["heading"], robots["turn_rate"]
     forward_x, forward_y = robots["forward_x"], robots["forward_y"]
