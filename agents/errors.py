@@ -40,14 +40,18 @@ class InputError(ValueError):
             Names of the fields that exist, to be named when an unknown one was given.
         """
         first = error.errors()[0]
-        # Where a field may have several types, pydantic puts the name of the type into the path.
-        path = ".".join(
-            str(part) for part in first["loc"] if str(part).isidentifier() or isinstance(part, int)
-        )
+        unknown = first["type"] == "extra_forbidden"
+        # Where a field may have several types, pydantic puts the name of the type into the path. A field that
+        # there is not may be called anything.
+        *outer, last = first["loc"] or ("",)
+        parts = [part for part in outer if str(part).isidentifier() or isinstance(part, int)]
+        if unknown or str(last).isidentifier() or isinstance(last, int):
+            parts.append(last)
+        path = ".".join(map(str, parts))
         cause = first.get("ctx", {}).get("error")
         if isinstance(cause, InputError):
             return cls(f"{path}.{cause.field}" if path else cause.field, cause.value, cause.allowed)
-        if first["type"] == "extra_forbidden":
+        if unknown:
             return cls(path, first["input"], f"no such field; there are {', '.join(fields)}")
         if first["type"] == "missing":
             return cls(path, None, "is required")

@@ -54,6 +54,7 @@ def test_a_file_says_no_more_than_what_differs_from_the_defaults(tmp_path: Path)
         ("duration", "length", "hunt.toml: conditions.0.length=60: no such field; there are name, swarms, "),
         ('"avoid"', '"atack"', "hunt.toml: policy='atack': must be one of avoid"),
         ("seeds = 3", "self = 1", "hunt.toml: self=1: no such field; there are id, title, "),
+        ("seeds = 3", '"a-b" = 1', "hunt.toml: a-b=1: no such field; there are id, title, "),
         ("duration = 60", "self = 1", "hunt.toml: conditions.0.self=1: no such field; there are name, "),
         ("share = 2", "self = 1", "hunt.toml: conditions.0.swarms.0.self=1: no such field; there are pol"),
         ('title = "Two avoid one"', "", "hunt.toml: title=None: is required"),
