@@ -16,7 +16,7 @@ from agents.actions import TOWARDS, Action
 from agents.errors import InputError
 from agents.fleet import ACTION, HOME, HOME_TURN, HOMING_ERROR, IDLE, LEG, LEG_OVER, TURN
 from agents.habits import Conflict
-from agents.policies import LearningPolicy, Policy
+from agents.policy import LearningPolicy, Policy
 from agents.sensors import ANGLES_OF, heads_for, read_robots, walls_met, wrap
 from agents.streams import Purpose, Streams
 from agents.world import World

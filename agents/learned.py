@@ -4,15 +4,13 @@ import json
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from agents.actions import AWAY, Action
 from agents.errors import InputError
 from agents.files import whole
+from agents.policy import Setting
 from agents.validation import Checked
-
-if TYPE_CHECKING:
-    from agents.policies import Setting
 
 _FORMAT: Final = "kswarms-policies-1"
 
@@ -45,7 +43,7 @@ class LearnedPolicy:
         If there is no such file, or what was learned does not fit the game.
     """
 
-    def __init__(self, setting: "Setting", file: str = "") -> None:
+    def __init__(self, setting: Setting, file: str = "") -> None:
         if not isinstance(file, str) or not file:
             raise InputError("file", file, "must be the path of a file of learned policies")
         saved = load(Path(file))

@@ -1,7 +1,7 @@
 """The learner: a bandit for each swarm-ID that a robot can meet (section 1.5, Algorithm 1)."""
 
 from math import isfinite, nan
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import Any, Final, Literal
 
 from numpy.random import Generator
 
@@ -9,12 +9,10 @@ from agents.actions import Action
 from agents.bandit import Bandit
 from agents.errors import InputError
 from agents.learned import flight
+from agents.policy import Setting
 from agents.rewards import Reward, make_reward
 from agents.selection import make_rule
 from agents.streams import Purpose
-
-if TYPE_CHECKING:
-    from agents.policies import Setting
 
 _NOTHING: Final = (nan, nan)
 """Reward and value of a conflict that nothing is learned from."""
@@ -52,7 +50,7 @@ class Learner:
 
     def __init__(
         self,
-        setting: "Setting",
+        setting: Setting,
         about: Literal["inter", "intra", "both"] = "both",
         reward: str = "wlu",
         rule: str = "ucb",
@@ -119,7 +117,7 @@ class Learner:
         Parameters
         ----------
         t_a, t_p, n_active
-            As in `agents.policies.LearningPolicy.learn`.
+            As in `agents.policy.LearningPolicy.learn`.
 
         Returns
         -------

@@ -4,15 +4,13 @@ import inspect
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 from agents.calls import Call, parse_call, require_known
 from agents.errors import InputError
 from agents.learned import check_arms
 from agents.outside import blaming, is_reference, load_class, sources
-
-if TYPE_CHECKING:
-    from agents.policies import LearningPolicy, Policy, Setting
+from agents.policy import LearningPolicy, Policy, Setting
 
 
 def policy_class(call: Call) -> type[Any]:
@@ -45,7 +43,7 @@ def _has(kind: type, method: str) -> bool:
     return callable(getattr(kind, method, None))
 
 
-def rehearse(text: str, policy: "Policy", setting: "Setting") -> None:
+def rehearse(text: str, policy: Policy, setting: Setting) -> None:
     """Try a policy from outside, so that a mistake in it is told before the game; trust the package's own.
 
     Parameters

@@ -16,7 +16,8 @@ from agents.actions import Action
 from agents.body import BODIES, Body
 from agents.errors import InputError
 from agents.own import rehearse
-from agents.policies import ALIASES, POLICIES, Setting, make_policy, parts
+from agents.policies import ALIASES, POLICIES, make_policy, parts
+from agents.policy import Setting
 from agents.streams import Streams
 from agents.validation import Checked
 from model.arena import LAYOUTS, Arena, build_arena

@@ -9,7 +9,8 @@ from mesa.experimental.continuous_space import ContinuousSpace
 from agents.fleet import Fleet
 from agents.krembot import Krembot
 from agents.outside import is_reference
-from agents.policies import Setting, deal, make_policy
+from agents.policies import deal, make_policy
+from agents.policy import Setting
 from agents.streams import Streams
 from agents.world import World
 from model.arena import Arena

@@ -19,7 +19,8 @@ import pyarrow.parquet as pq
 from agents.errors import InputError
 from agents.files import remove_unfinished, whole
 from agents.learner import Learner
-from agents.policies import Setting, deal, make_policy
+from agents.policies import deal, make_policy
+from agents.policy import Setting
 from agents.rewards import WLU, Reward
 from agents.streams import Streams
 from model.game import Game

@@ -9,7 +9,7 @@ from typing import Any, Final, cast
 import numpy as np
 
 from agents.actions import AWAY, TOWARDS, Action
-from agents.policies import LearningPolicy, Policy, Setting
+from agents.policy import LearningPolicy, Policy, Setting
 from agents.streams import Purpose, Streams, stream
 
 TWO: Final = (

@@ -2,7 +2,7 @@
 """A policy: flee from other swarms, but for every so many meetings."""
 
 from agents.actions import AWAY, TOWARDS, Action
-from agents.policies import Setting
+from agents.policy import Setting
 
 
 class Cautious:

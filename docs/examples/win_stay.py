@@ -4,7 +4,7 @@
 import math
 
 from agents.actions import Action
-from agents.policies import Setting
+from agents.policy import Setting
 from agents.streams import Purpose
 
 

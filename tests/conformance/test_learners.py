@@ -21,7 +21,8 @@ from agents.conformance import POLICY_CHECKS
 from agents.conformance.policies import GAMES, TWO, live, setting
 from agents.learned import save
 from agents.learner import Learner
-from agents.policies import POLICIES, Policy, Setting, make_policy
+from agents.policies import POLICIES, make_policy
+from agents.policy import Policy, Setting
 from agents.rewards import REWARDS
 from agents.selection import RULES
 from agents.streams import Purpose

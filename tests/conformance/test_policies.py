@@ -7,7 +7,8 @@ import pytest
 
 from agents.actions import AWAY, TOWARDS, Action
 from agents.errors import InputError
-from agents.policies import POLICIES, Policy, Setting, deal, make_policy
+from agents.policies import POLICIES, deal, make_policy
+from agents.policy import Policy, Setting
 from agents.streams import Streams
 from model.game import Game, Swarm
 

@@ -11,7 +11,8 @@ from scipy.spatial.distance import pdist
 
 from agents.actions import TOWARDS
 from agents.fleet import ACTION
-from agents.policies import Setting, make_policy
+from agents.policies import make_policy
+from agents.policy import Setting
 from agents.streams import Streams
 from model.foraging import GameModel
 from model.game import Game, Swarm, apportion

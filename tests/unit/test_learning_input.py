@@ -4,7 +4,8 @@ import pytest
 
 from agents.actions import AWAY, TOWARDS, Action
 from agents.errors import InputError
-from agents.policies import Setting, make_policy
+from agents.policies import make_policy
+from agents.policy import Setting
 from agents.streams import Streams
 from model.plain import ForagingModel
 

@@ -11,7 +11,8 @@ from scipy.stats import chisquare
 from agents.actions import AWAY, TOWARDS, Action
 from agents.errors import InputError
 from agents.learner import Learner
-from agents.policies import Setting, deal, describe, make_policy, parts
+from agents.policies import deal, describe, make_policy, parts
+from agents.policy import Setting
 from agents.streams import Purpose, Streams, stream
 
 FLIGHT = Action(name="flight", direction=AWAY, duration=1.8)

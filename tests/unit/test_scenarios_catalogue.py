@@ -7,7 +7,8 @@ from typing import NamedTuple
 import pytest
 
 from agents.learner import Learner
-from agents.policies import Setting, make_policy
+from agents.policies import make_policy
+from agents.policy import Setting
 from agents.rewards import WLU, IndividualUtility, Reward, SingleSwarmWLU
 from agents.selection import UCB, DiscountedUCB, Greedy, PeriodicRandom, Rule
 from agents.streams import Streams
