@@ -23,9 +23,10 @@ from typing import Any, Final, Self, TextIO
 
 from agents.errors import InputError
 from agents.files import UNFINISHED, remove_unfinished
+from scenarios.database import FILE
 from scenarios.description import Scenario
 from scenarios.files import make_directory, write_json
-from scenarios.ledger import FILE, Ledger
+from scenarios.ledger import Ledger
 from scenarios.overview import codes
 from scenarios.runner import Failure, Outcome, Result, sweep
 from scenarios.runs import Run, code_version, describe_curve, expand, package_version

@@ -13,7 +13,8 @@ Directory = Annotated[Path, typer.Argument(metavar="DIR", help="What `kswarms ru
 
 def status(directory: Directory) -> None:
     """Tell what is done, what failed and why, what is missing, and what it took."""
-    from scenarios.ledger import FILE, Ledger
+    from scenarios.database import FILE
+    from scenarios.ledger import Ledger
     from scenarios.overview import by_scenario, codes, failures, in_all
     from scenarios.study import holder, replay_command
 
@@ -43,7 +44,8 @@ def replay(
     wanted: Annotated[str, typer.Argument(metavar="RUN", help="A run of its tables: the column `run`.")],
 ) -> int:
     """Play one run again, print what comes out of it, and tell whether DIR has the same. Write nothing."""
-    from scenarios.ledger import FILE, Ledger
+    from scenarios.database import FILE
+    from scenarios.ledger import Ledger
     from scenarios.runner import name_of, play
 
     with Ledger(directory / FILE) as ledger:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from scenarios.cli import invoke
-from scenarios.ledger import FILE
+from scenarios.database import FILE
 
 QUICK = ["--densities", "6", "--seeds", "1", "--jobs", "1", "--quiet"]
 SCENARIO = """

@@ -11,7 +11,8 @@ from model.foraging import GameModel
 from model.plain import ForagingModel
 from model.recording import save_policies
 from scenarios.cli import invoke
-from scenarios.ledger import FILE, Ledger
+from scenarios.database import FILE
+from scenarios.ledger import Ledger
 from scenarios.overview import failures
 
 POLICY = """

@@ -14,7 +14,8 @@ from model.foraging import GameModel
 from model.plain import ForagingModel
 from scenarios import runs as runs_module
 from scenarios.cli import invoke
-from scenarios.ledger import FILE, Ledger, find_run
+from scenarios.database import FILE
+from scenarios.ledger import Ledger, find_run
 from scenarios.runner import Failure, play
 from scenarios.runs import expand
 from scenarios.study import Study

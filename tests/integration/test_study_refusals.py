@@ -15,8 +15,9 @@ from agents.errors import InputError
 from scenarios import runs as runs_module
 from scenarios import study as study_module
 from scenarios.cli import invoke
+from scenarios.database import FILE
 from scenarios.description import Condition, SwarmRule
-from scenarios.ledger import FILE, find_run
+from scenarios.ledger import find_run
 from scenarios.study import LOCK, Study, holder
 from tests.tiny_study import RUN, TINY, contents, sessions
 

@@ -17,7 +17,7 @@ import pytest
 
 from model.foraging import GameModel
 from scenarios.cli import invoke
-from scenarios.ledger import FILE
+from scenarios.database import FILE
 from scenarios.study import Study
 from tests.interrupts import heed_interrupts
 from tests.tiny_study import RUN, TINY, Fault, contents, sessions, undisturbed

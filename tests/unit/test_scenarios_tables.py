@@ -10,7 +10,8 @@ import pytest
 
 from scenarios import tables
 from scenarios.catalogue import CATALOGUE
-from scenarios.ledger import FILE, Ledger
+from scenarios.database import FILE
+from scenarios.ledger import Ledger
 from scenarios.runner import RECORDS, Failure, Outcome
 from scenarios.runs import Run, expand
 from scenarios.tables import export, pack, tabulate
