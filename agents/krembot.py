@@ -7,26 +7,25 @@ timeout that a conflict has overtaken finds another one in its place, `_timer`, 
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, Final, cast
+from typing import Any, Final
 
-from mesa.experimental.continuous_space import ContinuousSpaceAgent
 from simpy.events import Timeout
 
 from agents.actions import TOWARDS, Action
 from agents.errors import InputError
 from agents.fleet import ACTION, HOME, HOME_TURN, HOMING_ERROR, IDLE, LEG, LEG_OVER, TURN
-from agents.habits import Conflict
-from agents.policy import LearningPolicy, Policy
+from agents.policy import Policy
 from agents.sensors import ANGLES_OF, heads_for, read_robots, walls_met, wrap
 from agents.streams import Purpose, Streams
+from agents.timed import TimedAgent
 from agents.world import World
 
 _STRAIGHT: Final = 1e-9
 """A turn by less than this angle is none (rad)."""
 
 
-class Krembot(ContinuousSpaceAgent):
-    """A robot.
+class Krembot(TimedAgent):
+    """A robot: what it does. How long it took, and whom it met, its `TimedAgent` part tells.
 
     Parameters
     ----------
@@ -55,21 +54,12 @@ class Krembot(ContinuousSpaceAgent):
         Its row in the fleet: its number, less by one for each robot before it that is absent.
     pucks : int
         Pucks deposited.
-    t_a : list of int, length `swarms`
-        Periods of action, by the opponent's swarm; of actions that have ended.
-    t_p : int
-        Periods of program; of those that have ended.
-    conflicts : list of int, length `swarms`
-        Conflicts begun, by the opponent's swarm.
     """
 
-    # Every conflict reads and writes many of them, and beyond thirty a dict no longer finds them at once.
     __slots__ = (
-        *("number", "index", "swarm", "policy", "policy_name", "pucks", "t_a", "t_p", "conflicts"),
-        *("_env", "_draws", "_learn", "_allowed", "_fleet", "_phase", "_opponent", "_stride", "_turn_rate"),
-        *("_habits", "_turn_step", "_action_periods", "_log", "_stride_program", "_stride_action"),
-        *("_timer", "_since", "_action", "_is_open", "_is_over", "_active", "_opponent_swarm"),
-        *("_open", "_open_t_a"),
+        *("number", "swarm", "policy_name", "pucks", "_draws", "_allowed", "_fleet", "_opponent", "_stride"),
+        *("_turn_rate", "_habits", "_turn_step", "_action_periods", "_stride_program", "_stride_action"),
+        *("_timer", "_action"),
     )
 
     def __init__(
@@ -85,54 +75,27 @@ class Krembot(ContinuousSpaceAgent):
         swarms: int,
         actions: Sequence[Action] | None = None,
     ) -> None:
-        super().__init__(model.space, cast(Any, model))
-        self.number = self.index = number
+        super().__init__(model, number, policy, swarms)
+        self.number = number
         self.swarm = swarm
-        self.policy = policy
         self.policy_name = policy_name
         self.pucks = 0
-        self.t_a = [0] * swarms
-        self.t_p = 0
-        self.conflicts = [0] * swarms
-        self._env = model.env
         self._draws = streams.draws
-        self._learn: Callable[[float, float, int], tuple[float, float]] | None
-        self._learn = getattr(policy, "learn", None)
         self._allowed = actions
         self._fleet = model.fleet
-        self._phase = model.fleet.phase
         self._opponent = model.fleet.opponent
         self._stride = model.fleet.stride
         self._turn_rate = model.fleet.turn_rate
         self._habits = model.habits
         self._turn_step = model.habits.turn_step
         self._action_periods = model.action_periods
-        self._log = model.conflict_log
         self._stride_program = stride_program
         self._stride_action = stride_action
         self._timer: Timeout | None = None
-        self._since = int(model.env.now)
-        """When the current action or program began."""
         self._action: Action | None = None
         """Action of the last conflict."""
-        self._is_open = False
-        """Whether a conflict waits to be closed."""
-        self._is_over = False
-        """Whether its game has ended."""
-        self._active = 0
-        """Sensors that were active when it began."""
-        self._opponent_swarm = -1
-        """Swarm of the robot met last."""
-        self._open: tuple[Any, ...] = ()
-        """First fields of the open `Conflict`, if conflicts are logged."""
-        self._open_t_a = 0
 
     # What others may ask.
-
-    @property
-    def state(self) -> str:
-        """``A`` while it resolves a conflict, else ``P``."""
-        return "A" if self._phase[self.index] == ACTION else "P"
 
     @property
     def carrying(self) -> bool:
@@ -143,16 +106,6 @@ class Krembot(ContinuousSpaceAgent):
     def heading(self) -> float:
         """Direction (rad)."""
         return float(self._fleet.heading[self.index])
-
-    def times(self) -> tuple[list[int], int]:
-        """Return T(a) by the opponent's swarm and T(p) up to now (periods)."""
-        t_a, t_p = self.t_a.copy(), self.t_p
-        running = 0 if self._is_over else int(self._env.now) - self._since
-        if self._phase[self.index] == ACTION:
-            t_a[self._opponent_swarm] += running
-        else:
-            t_p += running
-        return t_a, t_p
 
     # The program.
 
@@ -234,13 +187,11 @@ class Krembot(ContinuousSpaceAgent):
                 f"choose({swarm}) must return an action of the game, not {action!r}",
             )
         self._opponent[index] = other
-        self._opponent_swarm = swarm
-        self._is_open = True
-        self._active = active
-        self.conflicts[swarm] += 1
+        about: tuple[Any, ...] = ()
         if self._log is not None:
             x, y = self._fleet.positions[index].tolist()
-            self._open = (index, other, now, x, y, action, active, self._read_robots(other))
+            about = (index, other, now, x, y, action, active, self._read_robots(other))
+        self._begin(swarm, active, about)
         if action.direction != TOWARDS:
             angle = self._vacant_direction(vacant)
         if abs(angle) > _STRAIGHT:
@@ -249,53 +200,15 @@ class Krembot(ContinuousSpaceAgent):
             self._timer = None
             self._drive_action(None)
 
-    def close(self, now: int, learn: bool = True) -> None:
-        """Count the time up to `now` (periods) and end the open conflict.
-
-        Parameters
-        ----------
-        now : int
-            The time (periods).
-        learn : bool
-            Whether the policy is told; not where the end is not the next conflict, but that of the phase.
-        """
-        elapsed = now - self._since
-        self._since = now
-        if self._phase[self.index] == ACTION:  # overtaken: no program time
-            self.t_a[self._opponent_swarm] += elapsed
-            self._open_t_a = elapsed
-            elapsed = 0
-        self.t_p += elapsed
-        if self._is_open:
-            self._is_open = False
-            if self._learn is not None or self._log is not None:
-                self._settle(elapsed, learn)
-
-    def _settle(self, t_p: int, learn: bool) -> None:
-        """Reward the conflict that ends with T(p) = `t_p` (periods), and log it."""
-        reward = value = math.nan
-        if learn and self._learn is not None:
-            period = self._habits.period
-            reward, value = self._learn(self._open_t_a * period, t_p * period, self._active)
-        if self._log is not None:
-            self._log.append(Conflict._make((*self._open, self._open_t_a, t_p, reward, value)))
-
     def restart(self, now: int) -> None:
         """Begin the measured game: scores, times and conflicts from 0, and nothing more is learned."""
-        self.close(now, learn=False)
+        super().restart(now)
         self.pucks = 0
-        self.t_a = [0] * len(self.t_a)
-        self.t_p = 0
-        self.conflicts = [0] * len(self.conflicts)
-        if self._learn is not None:
-            self._learn = None
-            cast(LearningPolicy, self.policy).freeze()
 
     def finish(self, now: int) -> None:
         """End the game: what was set to happen later does not."""
-        self.close(now, learn=False)
+        super().finish(now)
         self._timer = None
-        self._is_over = True
 
     def _read_robots(self, met: int) -> tuple[int, ...]:
         """Return the robot that each sensor reads as it meets one of them, −1 for none."""
@@ -323,10 +236,7 @@ class Krembot(ContinuousSpaceAgent):
 
     def _action_over(self, event: Timeout) -> None:
         if event is self._timer:
-            now: int = self._env.now  # type: ignore[assignment]  # whole periods; `cast` would cost a call
-            elapsed = self._open_t_a = now - self._since
-            self.t_a[self._opponent_swarm] += elapsed
-            self._since = now
+            self._end_action()
             self._phase[self.index] = IDLE
 
     # Legs and turns: at their end they ask for a decision, which the percepts of the same instant bring.
