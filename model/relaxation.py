@@ -3,7 +3,7 @@
 Each pass works on the positions that all bodies had before it, so no robot profits from its number. A jam
 needs many, since each carries a correction one body farther: a part of the last pass's move is therefore
 added, which grows from pass to pass as in Nesterov's method (1983). What comes out is nearly what the
-passes alone come to, after a quarter of them.
+passes alone come to, after a third of them.
 """
 
 import math
@@ -21,9 +21,12 @@ _PLAIN_PASSES: Final = 3
 """Passes before the relaxation gathers momentum: enough for all but jams."""
 _MOST_MOMENTUM: Final = 0.8
 """Part of the last pass's move that a pass adds in the end."""
+_HALF_GATHERED: Final = 6
+"""Passes with momentum after which that part is a half."""
 _PASSES: Final = 200
 """Passes of the relaxation before it looks again at which pairs are close."""
 _ROUNDS: Final = 200
+"""Looks before it gives up."""
 _STUCK: Final = 1000
 """Passes after which a straight row between walls is suspected, which none of them can part."""
 _TURN: Final = 0.01
@@ -91,6 +94,16 @@ def relax(positions: Floats, radius: float, half: float, work: Records, pairs: R
 
 
 @compiled
+def _offset(positions: Floats, i: int, j: int) -> tuple[float, float]:
+    return positions[j, 0] - positions[i, 0], positions[j, 1] - positions[i, 1]
+
+
+@compiled
+def _overlap(dx: float, dy: float, radius: float) -> bool:
+    return dx * dx + dy * dy < (2.0 * radius - _TOUCH) ** 2
+
+
+@compiled
 def _find_close(positions: Floats, radius: float, pairs: Records, n_pairs: int) -> tuple[int, float]:
     """List the pairs with hardly a gap, and return their number and the greatest overlap (m)."""
     first, second = pairs["first"], pairs["second"]
@@ -99,8 +112,7 @@ def _find_close(positions: Floats, radius: float, pairs: Records, n_pairs: int) 
     nearest = reach * reach
     n_close = 0
     for k in range(n_pairs):
-        dx = positions[second[k], 0] - positions[first[k], 0]
-        dy = positions[second[k], 1] - positions[first[k], 1]
+        dx, dy = _offset(positions, first[k], second[k])
         squared = dx * dx + dy * dy
         if squared < reach * reach:
             close_first[n_close] = first[k]
@@ -118,9 +130,8 @@ def _bend(positions: Floats, radius: float, work: Records, pairs: Records, n_clo
     for c in range(n_close):
         i = close_first[c]
         j = close_second[c]
-        dx = positions[j, 0] - positions[i, 0]
-        dy = positions[j, 1] - positions[i, 1]
-        if dx * dx + dy * dy < (2.0 * radius - _TOUCH) ** 2:
+        dx, dy = _offset(positions, i, j)
+        if _overlap(dx, dy, radius):
             shove_x[i] += _TURN * dy
             shove_y[i] -= _TURN * dx
             shove_x[j] -= _TURN * dy
@@ -153,10 +164,9 @@ def _forget_resting(positions: Floats, radius: float, work: Records, pairs: Reco
     for c in range(n_close):
         i = close_first[c]
         j = close_second[c]
-        dx = positions[j, 0] - positions[i, 0]
-        dy = positions[j, 1] - positions[i, 1]
+        dx, dy = _offset(positions, i, j)
         moves = abs(move_x[i]) + abs(move_y[i]) + abs(move_x[j]) + abs(move_y[j])
-        if moves > _AT_REST or dx * dx + dy * dy < (2.0 * radius - _TOUCH) ** 2:
+        if moves > _AT_REST or _overlap(dx, dy, radius):
             close_first[kept] = i
             close_second[kept] = j
             kept += 1
@@ -172,8 +182,7 @@ def _measure_overlaps(positions: Floats, radius: float, work: Records, pairs: Re
     for c in range(n_close):
         i = close_first[c]
         j = close_second[c]
-        dx = positions[j, 0] - positions[i, 0]
-        dy = positions[j, 1] - positions[i, 1]
+        dx, dy = _offset(positions, i, j)
         # Without a branch for pairs that do not overlap: in a jam it would be guessed wrong half of the time.
         distance = math.sqrt(dx * dx + dy * dy)
         overlap = max(0.0, 2.0 * radius - distance)
@@ -195,7 +204,7 @@ def _measure_overlaps(positions: Floats, radius: float, work: Records, pairs: Re
 def _momentum(done: int) -> float:
     """Return the part of the last pass's move that a pass after `done` others adds."""
     gathered = done - _PLAIN_PASSES + 1
-    return min(_MOST_MOMENTUM, max(0.0, gathered / (gathered + 6.0)))
+    return min(_MOST_MOMENTUM, max(0.0, gathered / (gathered + _HALF_GATHERED)))
 
 
 @compiled

@@ -23,6 +23,13 @@ from scenarios.catalogue import CATALOGUE
 from scenarios.runner import RECORDS, Failure, Outcome, RunError, attempt, play, play_all, sweep
 from scenarios.runs import Run, expand
 
+IMPORTS = """
+from scenarios.catalogue import CATALOGUE
+from scenarios.runner import play_all
+from scenarios.runs import expand
+"""
+"""With which the scripts of these tests begin."""
+
 
 def short(name: str, densities: tuple[int, ...] = (6, 10), seeds: int = 2) -> list[Run]:
     """Return runs of a scenario with games of 20 s, after as much learning if there is any."""
@@ -189,10 +196,7 @@ def test_whoever_stops_listening_stops_the_workers() -> None:
 def test_a_script_that_each_worker_would_run_anew_is_told_so(tmp_path: Path) -> None:
     script = tmp_path / "unguarded.py"
     script.write_text(
-        "from scenarios.catalogue import CATALOGUE\n"
-        "from scenarios.runner import play_all\n"
-        "from scenarios.runs import expand\n"
-        "list(play_all(expand([CATALOGUE['fig-6.1a'].replace(densities=(6,), seeds=3)]), 2))\n"
+        f"{IMPORTS}list(play_all(expand([CATALOGUE['fig-6.1a'].replace(densities=(6,), seeds=3)]), 2))\n"
     )
     done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 1
@@ -206,10 +210,7 @@ def test_a_script_that_each_worker_would_run_anew_is_told_so(tmp_path: Path) -> 
 def test_workers_end_with_their_parent_even_if_it_is_killed(tmp_path: Path) -> None:
     script = tmp_path / "parent.py"
     script.write_text(
-        "from multiprocessing import active_children\n"
-        "from scenarios.catalogue import CATALOGUE\n"
-        "from scenarios.runner import play_all\n"
-        "from scenarios.runs import expand\n"
+        f"{IMPORTS}from multiprocessing import active_children\n"
         "if __name__ == '__main__':\n"
         "    runs = expand([CATALOGUE['fig-6.2'].replace(densities=(50,), seeds=50)])\n"
         "    for _ in play_all(runs, 2):\n"
