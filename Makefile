@@ -25,8 +25,9 @@ explore: $(TEST)  ## open the page in which games are watched
 test: lint types docs  ## lint, types, documentation, and every test with its coverage
 	$(BIN)/python -m pytest --cov --cov-report=term-missing:skip-covered
 
-lint: $(TEST)  ## ruff
+lint: $(TEST)  ## ruff, and the direction of imports
 	$(BIN)/ruff check .
+	$(BIN)/lint-imports --no-cache
 
 types: $(TEST)  ## mypy, strict
 	$(BIN)/mypy

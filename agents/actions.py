@@ -4,7 +4,7 @@ from typing import Final, Literal
 
 from pydantic import Field
 
-from agents.validation import Checked
+from kswarms.agents.common.descriptions import Checked
 
 AWAY: Literal[-1] = -1
 TOWARDS: Literal[1] = 1

@@ -19,10 +19,10 @@ import pyarrow.parquet as pq
 import simpy
 from simpy.events import Event, Timeout
 
-from model.foraging import GameModel
-from model.plain import ForagingModel
-from scenarios.description import Condition, Scenario, SwarmRule
-from scenarios.study import Study
+from kswarms.model.foraging import ForagingModel
+from kswarms.model.game_model import GameModel
+from kswarms.scenarios.description.scenario import Condition, Scenario, SwarmRule
+from kswarms.scenarios.study.study import Study
 
 MOST_TIMES_BARE: Final = 5.0
 LEAST_THROUGHPUT: Final = 80_000
@@ -61,7 +61,7 @@ class Work(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """A kind of game, as `model.plain.ForagingModel` takes it."""
+    """A kind of game, as `kswarms.model.foraging.ForagingModel` takes it."""
 
     policies: str
     n: int
@@ -197,7 +197,7 @@ def seconds_to_game(n: int) -> float:
     """Return how long a new process of the command line takes to play and store one game (s)."""
     with tempfile.TemporaryDirectory() as directory:
         words = f"run fig-6.1c --densities {n} --seeds 1 --jobs 1 --no-figures --out {directory}/results"
-        program = "from scenarios.cli import main; main()"
+        program = "from kswarms.scenarios.cli import main; main()"
         start = time.perf_counter()
         done = subprocess.run(
             [sys.executable, "-c", program, *words.split()], capture_output=True, text=True, check=True
@@ -308,7 +308,7 @@ def main(
         growth(sizes, duration / 6, 2),
         f"bound: ≤ {MOST_GROWTH:g} at N = {sizes[-1]}; building is not in it",
     )
-    imports = "from model.plain import ForagingModel"
+    imports = "from kswarms import ForagingModel"
     game = f"{imports}\nForagingModel(n=50, record='', duration={duration}).play()"
     print_table(
         "Peak memory of a new process that plays N = 50, compiled code cached",

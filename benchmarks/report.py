@@ -14,8 +14,8 @@ from typing import Any, Final
 import numpy as np
 import pandas as pd
 
-from scenarios.catalogue import CATALOGUE
-from scenarios.description import Condition, Scenario
+from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.description.scenario import Condition, Scenario
 
 MOST_SECONDS: Final = 120.0
 MOST_MEMORY: Final = 1500
@@ -23,7 +23,7 @@ MOST_MEMORY: Final = 1500
 
 _REPORT: Final = """
 import resource, sys
-from scenarios.cli import invoke
+from kswarms.scenarios.cli import invoke
 status = invoke(["report", sys.argv[1]])
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
 sys.exit(status)

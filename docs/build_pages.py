@@ -46,12 +46,12 @@ def reference(package: str) -> str:
     """Return the page of a package: what it says of itself, then each public module."""
     names = []
     for path in sorted((ROOT / package).rglob("*.py")):
-        parts = path.relative_to(ROOT).with_suffix("").parts
+        parts = ("kswarms", *path.relative_to(ROOT).with_suffix("").parts)
         if path.name == "__init__.py":
             parts = parts[:-1]
         if not any(part.startswith("_") for part in parts):
             names.append(".".join(parts))
-    return "\n\n".join([f"# {package}", *(f"::: {name}" for name in names)])
+    return "\n\n".join([f"# kswarms.{package}", *(f"::: {name}" for name in names)])
 
 
 def notebook(path: Path) -> tuple[str, dict[str, bytes]]:

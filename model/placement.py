@@ -10,11 +10,11 @@ from typing import Final
 import numpy as np
 from scipy.spatial.distance import pdist
 
-from agents.errors import InputError
-from agents.fleet import Floats
-from agents.streams import Purpose, stream
-from model.relaxation import TOLERANCE, relax
-from model.world import PAIR, WORK
+from kswarms.agents.common.arrays import Floats
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.streams import Purpose, stream
+from kswarms.model.kernel.arrays import PAIR, WORK
+from kswarms.model.kernel.relaxation import TOLERANCE, relax
 
 _BATCHES: Final = (16, 256, 4096, 4096)
 """Places tried at a time: few at first, many where room is scarce."""

@@ -6,16 +6,16 @@ from random import Random
 import numpy as np
 from mesa.experimental.continuous_space import ContinuousSpace
 
-from agents.fleet import Fleet
-from agents.krembot import Krembot
-from agents.outside import is_reference
-from agents.policies import deal, make_policy
-from agents.policy import Setting
-from agents.streams import Streams
-from agents.world import World
-from model.arena import Arena
-from model.game import Game
-from model.placement import start_poses
+from kswarms.agents.policies.interface import Setting
+from kswarms.agents.policies.registry import deal, make_policy
+from kswarms.agents.robot.host import World
+from kswarms.agents.robot.krembot import Krembot
+from kswarms.agents.robot.state import Fleet
+from kswarms.agents.streams import Streams
+from kswarms.agents.user_code.loading import is_reference
+from kswarms.model.description.arena import Arena
+from kswarms.model.description.game import Game
+from kswarms.model.placement import start_poses
 
 
 def place(game: Game, arena: Arena, seed: int, random: Random) -> tuple[ContinuousSpace, Fleet]:

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
-from model.foraging import GameModel
-from model.game import Game, Swarm
-from model.parameters import PRESETS
+from kswarms.model.description.game import Game, Swarm
+from kswarms.model.description.parameters import PRESETS
+from kswarms.model.game_model import GameModel
 
 # The first example of a test may compile the kernel: no deadline can tell that from a slow test.
 settings.register_profile("kswarms", deadline=None)
 settings.load_profile("kswarms")
 
 # What fails in a helper beside the tests shows its values, as it does in a test.
-pytest.register_assert_rewrite("tests")
+pytest.register_assert_rewrite("tests.helpers", "tests.reference", "tests.baseline")
 
 Pose = tuple[float, float, float]
 Scene = Callable[..., GameModel]

@@ -8,8 +8,8 @@ test framework; with pytest::
         check(MyPolicy)
 """
 
-from agents.conformance.policies import POLICY_CHECKS
-from agents.conformance.rewards import REWARD_CHECKS
-from agents.conformance.rules import RULE_CHECKS
+from kswarms.agents.conformance.policies import POLICY_CHECKS
+from kswarms.agents.conformance.rewards import REWARD_CHECKS
+from kswarms.agents.conformance.rules import RULE_CHECKS
 
 __all__ = ["POLICY_CHECKS", "REWARD_CHECKS", "RULE_CHECKS"]

@@ -8,9 +8,9 @@ from typing import Any, Final, cast
 
 import numpy as np
 
-from agents.actions import AWAY, TOWARDS, Action
-from agents.policy import LearningPolicy, Policy, Setting
-from agents.streams import Purpose, Streams, stream
+from kswarms.agents.actions import AWAY, TOWARDS, Action
+from kswarms.agents.policies.interface import LearningPolicy, Policy, Setting
+from kswarms.agents.streams import Purpose, Streams, stream
 
 TWO: Final = (
     Action(name="flight", direction=AWAY, duration=1.8),

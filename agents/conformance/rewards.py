@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterator
 from itertools import product
 from typing import Final
 
-from agents.conformance import descriptions
-from agents.rewards import Reward
+from kswarms.agents.conformance import shared as descriptions
+from kswarms.agents.learning.rewards import Reward
 
 Make = Callable[..., Reward]
 

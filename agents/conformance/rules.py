@@ -8,10 +8,10 @@ from typing import Final
 import numpy as np
 from numpy.random import Generator
 
-from agents.bandit import Bandit
-from agents.conformance import descriptions
-from agents.selection import Rule
-from agents.streams import Purpose, stream
+from kswarms.agents.conformance import shared as descriptions
+from kswarms.agents.learning.bandit import Bandit
+from kswarms.agents.learning.selection_rules import Rule
+from kswarms.agents.streams import Purpose, stream
 
 ARMS: Final = (1, 2, 3, 4)
 Make = Callable[..., Rule]

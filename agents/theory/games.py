@@ -13,9 +13,9 @@ from typing import Final
 import networkx as nx
 import numpy as np
 
-from agents.errors import InputError
-from agents.fleet import Floats
-from agents.theory.swarms import opponents_utility
+from kswarms.agents.common.arrays import Floats
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.theory.swarms import opponents_utility
 
 NATURE: Final = "Nature"
 OWN: Final = "own"

@@ -10,8 +10,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from agents.errors import InputError
-from agents.fleet import Floats
+from kswarms.agents.common.arrays import Floats
+from kswarms.agents.common.errors import InputError
 
 _Utility = TypeVar("_Utility", int, float)
 _Numbers = TypeVar("_Numbers", float, Floats)

@@ -5,7 +5,7 @@ absence instead ε̃. Several opposing swarms count as one: what they have from 
 difference by Eq. 3.1, so sums over them take the place of m.
 """
 
-from agents.theory.swarms import opponents_utility
+from kswarms.agents.theory.swarms import opponents_utility
 
 
 def wonderful_life_utility(sud: float, sud_without: float) -> float:

@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from importlib.resources import files
 from typing import Final
 
-from analysis.findings.claims import Finding, load, parse
-from analysis.findings.judging import judge
-from analysis.findings.verdicts import FAILS, HOLDS, NO_DATA, UNDECIDED, Verdict
-from analysis.results import Results
+from kswarms.analysis.findings.claims import Finding, load, parse
+from kswarms.analysis.findings.judging import judge
+from kswarms.analysis.findings.verdicts import FAILS, HOLDS, NO_DATA, UNDECIDED, Verdict
+from kswarms.analysis.results.runs import Results
 
 __all__ = [
     "FAILS",

@@ -1,7 +1,7 @@
 """Findings as data: what is claimed of which scenarios, in a form that results can answer.
 
 A finding is a sentence and a claim. Each kind of claim is a small checked description; TOML files hold lists
-of findings. How a claim is judged stands in `analysis.findings.verdicts`.
+of findings. How a claim is judged stands in `kswarms.analysis.findings.verdicts`.
 """
 
 import tomllib
@@ -10,9 +10,9 @@ from typing import Annotated, Final, Literal, Self
 
 from pydantic import Field, model_validator
 
-from agents.errors import InputError
-from agents.validation import Checked
-from analysis.statistics import CONFIDENCE
+from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.statistics.intervals import CONFIDENCE
 
 UNITS: Final = {
     "pucks": "pucks",
@@ -236,7 +236,7 @@ class Agreement(_OverDensities):
     Attributes
     ----------
     cells : tuple of Quantity
-        Columns of Tables 6.1 and 6.2 (`analysis.published.learned_percentages`), a cell at each density.
+        Columns of Tables 6.1 and 6.2 (`published.learned_percentages`), a cell at each density.
     margin : float
         Percentage points that the mean absolute error does not exceed.
     densities : tuple of int

@@ -15,9 +15,8 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from agents.errors import InputError
-from analysis.curves import overtaking, rank_correlation
-from analysis.findings.claims import (
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.findings.claims import (
     Agreement,
     Claim,
     Compare,
@@ -28,11 +27,18 @@ from analysis.findings.claims import (
     Share,
     Trend,
 )
-from analysis.findings.samples import Data, NoDataError, complete, listed, sizes
-from analysis.findings.verdicts import FAILS, HOLDS, NO_DATA, UNDECIDED, Outcome, Region, Verdict
-from analysis.published import learned_percentages
-from analysis.results import Results
-from analysis.statistics import Interval, Values, bootstrap_interval, fewest_seeds, more_seeds
+from kswarms.analysis.findings.data import Data, NoDataError, complete, listed, sizes
+from kswarms.analysis.findings.verdicts import FAILS, HOLDS, NO_DATA, UNDECIDED, Outcome, Region, Verdict
+from kswarms.analysis.results.published import learned_percentages
+from kswarms.analysis.results.runs import Results
+from kswarms.analysis.statistics.curves import overtaking, rank_correlation
+from kswarms.analysis.statistics.intervals import (
+    Interval,
+    Values,
+    bootstrap_interval,
+    fewest_seeds,
+    more_seeds,
+)
 
 _POWER: Final = 0.8
 
@@ -43,9 +49,9 @@ def judge(finding: Finding, results: Results) -> Verdict:
     Parameters
     ----------
     finding : Finding
-        One of `analysis.findings.FINDINGS`, or of a file of one's own.
+        One of `kswarms.analysis.findings.FINDINGS`, or of a file of one's own.
     results : Results
-        As `analysis.results.read_results` returns them.
+        As `kswarms.analysis.results.runs.read_results` returns them.
 
     Raises
     ------

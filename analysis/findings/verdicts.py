@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
-from analysis.statistics import Interval
+from kswarms.analysis.statistics.intervals import Interval
 
 HOLDS: Final = "holds"
 FAILS: Final = "fails"

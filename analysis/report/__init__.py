@@ -8,16 +8,22 @@ from typing import Final
 
 import pandas as pd
 
-from analysis.drawing import Look
-from analysis.findings import FINDINGS, Finding, judge_all
-from analysis.printed import span
-from analysis.report.coverage import Planned, coverage
-from analysis.report.coverage import printed as printed_coverage
-from analysis.report.page import Chapter, Part, Report, Tabled
-from analysis.report.provenance import provenance_parts
-from analysis.report.record_parts import PlacesOf, conflict_parts, recorded_curves, robots_parts
-from analysis.report.scenario_parts import ARGOS, argos_parts, scenario_part, table_part, verdicts_part
-from analysis.results import Results, read_results
+from kswarms.analysis.figures.style import Look
+from kswarms.analysis.findings import FINDINGS, Finding, judge_all
+from kswarms.analysis.report.coverage import Planned, coverage
+from kswarms.analysis.report.coverage import printed as printed_coverage
+from kswarms.analysis.report.page import Chapter, Part, Report, Tabled
+from kswarms.analysis.report.provenance import provenance_parts
+from kswarms.analysis.report.record_parts import PlacesOf, conflict_parts, recorded_curves, robots_parts
+from kswarms.analysis.report.scenario_parts import (
+    ARGOS,
+    argos_parts,
+    scenario_part,
+    table_part,
+    verdicts_part,
+)
+from kswarms.analysis.results.runs import Results, read_results
+from kswarms.analysis.text_tables import span
 
 __all__ = ["Planned", "Report", "report"]
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from analysis.printed import PrintedTable, span
+from kswarms.analysis.text_tables import PrintedTable, span
 
 
 @dataclass(frozen=True)

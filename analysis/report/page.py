@@ -16,10 +16,10 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescap
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from agents.errors import InputError
-from agents.files import whole
-from analysis.pictures import Picture, drawn
-from analysis.printed import PrintedTable
+from kswarms.agents.common.atomic_files import whole
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.figures.files import Picture, drawn
+from kswarms.analysis.text_tables import PrintedTable
 
 _MIME: Final = {"png": "image/png", "svg": "image/svg+xml"}
 
@@ -163,7 +163,7 @@ class Report:
     def to_html(self) -> str:
         """Return the page."""
         environment = Environment(
-            loader=PackageLoader("analysis.report", "templates"),
+            loader=PackageLoader("kswarms.analysis.report", "templates"),
             autoescape=select_autoescape(["html"]),
             undefined=StrictUndefined,
             trim_blocks=True,

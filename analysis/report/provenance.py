@@ -11,9 +11,9 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from agents.errors import InputError
-from analysis.printed import PrintedTable
-from analysis.report.page import Part, Tabled
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.report.page import Part, Tabled
+from kswarms.analysis.text_tables import PrintedTable
 
 MANIFEST_FILE: Final = "manifest.json"
 _LIBRARIES: Final = ("kswarms", "matplotlib", "networkx", "numpy", "pandas", "pyarrow", "scipy", "seaborn")

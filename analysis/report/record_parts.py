@@ -8,11 +8,18 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
-from analysis import emergence, maps, networks
-from analysis.drawing import Look
-from analysis.printed import NONE, PrintedTable
-from analysis.records import CONFLICTS_FILE, ROBOTS_FILE, read_conflicts, read_robots, recorded_runs
-from analysis.report.page import Part, Tabled
+from kswarms.analysis.figures import emergence, networks
+from kswarms.analysis.figures import heat_maps as maps
+from kswarms.analysis.figures.style import Look
+from kswarms.analysis.report.page import Part, Tabled
+from kswarms.analysis.results.records import (
+    CONFLICTS_FILE,
+    ROBOTS_FILE,
+    read_conflicts,
+    read_robots,
+    recorded_runs,
+)
+from kswarms.analysis.text_tables import NONE, PrintedTable
 
 GAMES: Final = 4
 """Recorded games of a density that the report looks into: conflicts of twenty would not tell more."""

@@ -6,13 +6,15 @@ from typing import Final
 
 import pandas as pd
 
-from agents.errors import InputError
-from analysis import fidelity, figures, scores, tables
-from analysis.drawing import Look, heading
-from analysis.findings import Verdict
-from analysis.printed import PrintedTable
-from analysis.report.page import Part, Tabled
-from analysis.results import Results
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.figures import over_n as figures
+from kswarms.analysis.figures.style import Look, heading
+from kswarms.analysis.findings import Verdict
+from kswarms.analysis.report.page import Part, Tabled
+from kswarms.analysis.results.runs import Results
+from kswarms.analysis.tables import fidelity, scores
+from kswarms.analysis.tables import learned as tables
+from kswarms.analysis.text_tables import PrintedTable
 
 ARGOS: Final = "argos-"
 """How the ids of scenarios begin that were also played in ARGoS."""

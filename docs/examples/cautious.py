@@ -1,8 +1,8 @@
 # cautious.py
 """A policy: flee from other swarms, but for every so many meetings."""
 
-from agents.actions import AWAY, TOWARDS, Action
-from agents.policy import Setting
+from kswarms.agents.actions import AWAY, TOWARDS, Action
+from kswarms.agents.policies.interface import Setting
 
 
 class Cautious:

@@ -4,9 +4,9 @@
 from numpy.random import Generator
 from pydantic import Field
 
-from agents.bandit import Bandit
-from agents.rewards import Reward
-from agents.selection import Rule
+from kswarms.agents.learning.bandit import Bandit
+from kswarms.agents.learning.rewards import Reward
+from kswarms.agents.learning.selection_rules import Rule
 
 
 class Haste(Reward):

@@ -3,9 +3,9 @@
 
 import math
 
-from agents.actions import Action
-from agents.policy import Setting
-from agents.streams import Purpose
+from kswarms.agents.actions import Action
+from kswarms.agents.policies.interface import Setting
+from kswarms.agents.streams import Purpose
 
 
 class WinStay:

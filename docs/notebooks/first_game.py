@@ -16,7 +16,7 @@ import matplotlib.pyplot as plt
 import pandas as pd
 import seaborn as sns
 
-from model.plain import ForagingModel
+from kswarms.model.foraging import ForagingModel
 
 model = ForagingModel(n=20, policies="avoid,attack", duration=600, seed=1)
 

@@ -17,9 +17,9 @@ import matplotlib.pyplot as plt
 import pandas as pd
 import seaborn as sns
 
-from agents.selection import UCB
-from model.plain import ForagingModel
-from model.recording import policy_rows
+from kswarms.agents.learning.selection_rules import UCB
+from kswarms.model.foraging import ForagingModel
+from kswarms.model.recorder import policy_rows
 
 model = ForagingModel(
     n=40, policies="attack,inter-learner", learning=1000, duration=300, seed=2, record="conflicts"

@@ -16,9 +16,16 @@ import matplotlib.pyplot as plt
 import pandas as pd
 import seaborn as sns
 
-from analysis.maps import heat_maps
-from analysis.networks import describe, jams, jams_figure, meeting_network, mixing_matrix, network_figure
-from model.plain import ForagingModel
+from kswarms.analysis.figures.heat_maps import heat_maps
+from kswarms.analysis.figures.networks import (
+    describe,
+    jams,
+    jams_figure,
+    meeting_network,
+    mixing_matrix,
+    network_figure,
+)
+from kswarms.model.foraging import ForagingModel
 
 model = ForagingModel(n=36, policies="avoid,attack", duration=600, seed=1, record="conflicts")
 model.play()

@@ -19,11 +19,11 @@ import matplotlib.pyplot as plt
 import pandas as pd
 import seaborn as sns
 
-from agents.conformance import POLICY_CHECKS, REWARD_CHECKS, RULE_CHECKS
-from agents.outside import load_class
-from agents.policies import make_policy
-from model.plain import ForagingModel
-from model.recording import policy_rows
+from kswarms.agents.conformance import POLICY_CHECKS, REWARD_CHECKS, RULE_CHECKS
+from kswarms.agents.policies.registry import make_policy
+from kswarms.agents.user_code.loading import load_class
+from kswarms.model.foraging import ForagingModel
+from kswarms.model.recorder import policy_rows
 
 EXAMPLES = "../examples"
 print(Path(EXAMPLES, "cautious.py").read_text())
@@ -37,7 +37,7 @@ pd.DataFrame(model.results())[["swarm", "policy", "pucks", "conflicts_inter"]]
 # %% [markdown]
 # ## Check it
 #
-# What every policy, reward and rule must do is in `agents.conformance`: the same seed gives the same
+# What every policy, reward and rule must do is in `kswarms.agents.conformance`: the same seed gives the same
 # choices, robots share no state, a copy goes on alike, and so on. A check that fails says what is wrong.
 
 # %%

@@ -17,10 +17,10 @@ import mesa
 import pandas as pd
 import seaborn as sns
 
-from model.plain import ForagingModel
-from scenarios.description import Condition, Scenario, SwarmRule
-from scenarios.runner import play_all
-from scenarios.runs import expand
+from kswarms.model.foraging import ForagingModel
+from kswarms.scenarios.description.scenario import Condition, Scenario, SwarmRule
+from kswarms.scenarios.runs.run import expand
+from kswarms.scenarios.runs.sweep import play_all
 
 scenario = Scenario(
     id="faster",

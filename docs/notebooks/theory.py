@@ -20,14 +20,14 @@ import numpy as np
 import pandas as pd
 import seaborn as sns
 
-from agents.theory.games import NormalForm, is_pairwise_zero_sum, polymatrix, zero_sum
-from agents.theory.times import Interaction, pair_utility, time_utility
-from analysis.contribution import assumption, means, of_question, time_sud
-from analysis.game_figures import draw_polymatrix
-from analysis.utilities import robot_utilities, swarm_utilities
-from model.foraging import GameModel
-from model.game import Game, Swarm
-from scenarios.contribution import contributions, robots_of
+from kswarms.agents.theory.games import NormalForm, is_pairwise_zero_sum, polymatrix, zero_sum
+from kswarms.agents.theory.times import Interaction, pair_utility, time_utility
+from kswarms.analysis.figures.game_forms import draw_polymatrix
+from kswarms.analysis.measures.contribution import assumption, means, of_question, time_sud
+from kswarms.analysis.measures.utilities import robot_utilities, swarm_utilities
+from kswarms.model.description.game import Game, Swarm
+from kswarms.model.game_model import GameModel
+from kswarms.scenarios.contribution.games import contributions, robots_of
 
 # %% [markdown]
 # ## A game in normal form

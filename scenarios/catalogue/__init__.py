@@ -6,9 +6,9 @@ row of the specification's tables: id, title, S1, S2 and what differs from the d
 
 from typing import Final, NamedTuple
 
-from scenarios.catalogue.argos import ARGOS
-from scenarios.catalogue.disadvantaged import DISADVANTAGED
-from scenarios.catalogue.symmetric import SYMMETRIC
+from kswarms.scenarios.catalogue.argos import ARGOS
+from kswarms.scenarios.catalogue.chapter_6 import SYMMETRIC
+from kswarms.scenarios.catalogue.chapter_7 import DISADVANTAGED
 
 CATALOGUE: Final = {scenario.id: scenario for scenario in (*SYMMETRIC, *DISADVANTAGED, *ARGOS)}
 """Every scenario by its id, in the order of the source."""

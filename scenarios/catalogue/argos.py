@@ -2,8 +2,8 @@
 
 from typing import Any, Final
 
-from scenarios.catalogue.words import curve, swarm
-from scenarios.description import Scenario
+from kswarms.scenarios.catalogue.builders import curve, swarm
+from kswarms.scenarios.description.scenario import Scenario
 
 AVOID, ATTACK = swarm("avoid"), swarm("attack")
 IN_ARGOS: Final[dict[str, Any]] = {"parameters": "argos", "body": "argos-footbot"}

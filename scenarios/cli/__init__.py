@@ -1,5 +1,5 @@
 """The command line ``kswarms``: a module for each command, `app` puts them together."""
 
-from scenarios.cli.app import invoke, main
+from kswarms.scenarios.cli.app import invoke, main
 
 __all__ = ["invoke", "main"]

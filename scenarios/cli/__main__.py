@@ -1,5 +1,5 @@
-"""``python -m scenarios.cli`` is ``kswarms``."""
+"""``python -m kswarms.scenarios.cli`` is ``kswarms``."""
 
-from scenarios.cli.app import main
+from kswarms.scenarios.cli.app import main
 
 main()

@@ -11,18 +11,18 @@ from typing import Annotated, Any, Final
 import typer
 from pydantic import ValidationError
 
-from agents.errors import InputError
-from scenarios.cli.calibrate import calibrate
-from scenarios.cli.catalogue import list_scenarios, show
-from scenarios.cli.conflicts import conflicts
-from scenarios.cli.contribution import contribution
-from scenarios.cli.explore import explore
-from scenarios.cli.film import film
-from scenarios.cli.report import report
-from scenarios.cli.run import run
-from scenarios.cli.status import replay, status
-from scenarios.runner import RunError
-from scenarios.runs import package_version
+from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.cli.calibrate import calibrate
+from kswarms.scenarios.cli.catalogue import list_scenarios, show
+from kswarms.scenarios.cli.conflicts import conflicts
+from kswarms.scenarios.cli.contribution import contribution
+from kswarms.scenarios.cli.explore import explore
+from kswarms.scenarios.cli.film import film
+from kswarms.scenarios.cli.report import report
+from kswarms.scenarios.cli.run import run
+from kswarms.scenarios.cli.status import replay, status
+from kswarms.scenarios.runs.run import package_version
+from kswarms.scenarios.runs.sweep import RunError
 
 INTERRUPTED: Final = 130
 

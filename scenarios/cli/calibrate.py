@@ -8,11 +8,11 @@ from typing import Annotated, Any
 
 import typer
 
-from scenarios.choice import integers, words
-from scenarios.cli.options import Jobs, directory, processes
-from scenarios.cli.progress import tracked
-from scenarios.runner import play_all
-from scenarios.runs import Run
+from kswarms.scenarios.catalogue.selecting import integers, words
+from kswarms.scenarios.cli.options import Jobs, directory, processes
+from kswarms.scenarios.cli.progress import tracked
+from kswarms.scenarios.runs.run import Run
+from kswarms.scenarios.runs.sweep import play_all
 
 
 def calibrate(
@@ -44,8 +44,8 @@ def calibrate(
     fresh: Annotated[bool, typer.Option("--fresh", help="Forget what DIR holds.")] = False,
 ) -> None:
     """Fit the free parameters to Table 6.1; called again after an interruption, go on."""
-    from analysis.published import table_6_1
-    from scenarios import calibration
+    from kswarms.analysis.results.published import table_6_1
+    from kswarms.scenarios.calibration import fit as calibration
 
     asked: dict[str, Any] = {"seeds": seeds, "generations": generations, "population": population}
     if free is not None:

@@ -5,14 +5,14 @@ from typing import Annotated
 
 import typer
 
-from model.parameters import parse_parameters
-from scenarios.catalogue import CATALOGUE, TABLES
-from scenarios.choice import chosen
-from scenarios.cli.options import ids
-from scenarios.cli.printing import print_columns
-from scenarios.cli.progress import clock
-from scenarios.cost import cpu_seconds
-from scenarios.description import Condition, Scenario, toml_of
+from kswarms.model.description.parameters import parse_parameters
+from kswarms.scenarios.catalogue import CATALOGUE, TABLES
+from kswarms.scenarios.catalogue.selecting import chosen
+from kswarms.scenarios.cli.options import ids
+from kswarms.scenarios.cli.printing import print_columns
+from kswarms.scenarios.cli.progress import clock
+from kswarms.scenarios.description.scenario import Condition, Scenario, toml_of
+from kswarms.scenarios.runs.cost import cpu_seconds
 
 
 def list_scenarios() -> None:

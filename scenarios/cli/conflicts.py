@@ -5,9 +5,9 @@ from typing import Annotated
 
 import typer
 
-from agents.errors import InputError
-from scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Watched, one_run
-from scenarios.cli.printing import print_columns
+from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Watched, one_run
+from kswarms.scenarios.cli.printing import print_columns
 
 
 def conflicts(
@@ -32,7 +32,7 @@ def conflicts(
         raise InputError("from", begin, "must be a number of seconds")
     if not first <= last:
         raise InputError("to", end, f"must be a number of seconds, at least {first:g}")
-    from scenarios.replay import TOLD, conflicts_of, told
+    from kswarms.scenarios.watch.conflicts import TOLD, conflicts_of, told
 
     rows = [
         told(account, found.game.learning)

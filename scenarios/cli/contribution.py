@@ -8,14 +8,14 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from agents.errors import InputError
-from scenarios.choice import chosen
-from scenarios.cli.options import Jobs, check_seed, directory, processes, scenario_ids
-from scenarios.cli.printing import print_table
-from scenarios.cli.progress import tracked
-from scenarios.description import MOST_SEEDS
-from scenarios.runner import Outcome, play_all
-from scenarios.runs import Run
+from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.catalogue.selecting import chosen
+from kswarms.scenarios.cli.options import Jobs, check_seed, directory, processes, scenario_ids
+from kswarms.scenarios.cli.printing import print_table
+from kswarms.scenarios.cli.progress import tracked
+from kswarms.scenarios.description.scenario import MOST_SEEDS
+from kswarms.scenarios.runs.run import Run
+from kswarms.scenarios.runs.sweep import Outcome, play_all
 
 
 def contribution(
@@ -66,8 +66,8 @@ def contribution(
     check_seed("first_seed", first_seed)
     workers = processes(jobs)
 
-    from analysis.contribution import time_sud
-    from scenarios.contribution import contributions, prepare_table, robots_of, write_table
+    from kswarms.analysis.measures.contribution import time_sud
+    from kswarms.scenarios.contribution.games import contributions, prepare_table, robots_of, write_table
 
     numbers = robots_of(game, robots)
     prepare_table(out)
@@ -85,7 +85,7 @@ def contribution(
 
 
 def _play(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, Outcome], None, None]:
-    from scenarios.contribution import RECORD
+    from kswarms.scenarios.contribution.games import RECORD
 
     with closing(play_all(runs, jobs, RECORD)) as played:
         yield from tracked(played, "playing", len(runs))
@@ -93,8 +93,8 @@ def _play(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, Outcome], None
 
 def _show(out: Path, scenario: str, title: str, question: dict[str, Any]) -> None:
     """Draw what was found and print it."""
-    from analysis.contribution import of_question, read
-    from analysis.contribution_shown import draw, printed
+    from kswarms.analysis.figures.contribution import draw, printed
+    from kswarms.analysis.measures.contribution import of_question, read
 
     named = {name: question[name] for name in ("condition", "n", "absent_from")}
     typer.echo(f"figure: {draw(out, title, scenario=scenario, **named)}")

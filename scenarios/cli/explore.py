@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from agents.errors import InputError
-from scenarios.cli.options import RunDigest, Watched, asked
+from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.cli.options import RunDigest, Watched, asked
 
 
 def explore(
@@ -22,8 +22,8 @@ def explore(
     """Open a page in which games are watched, changed and looked into; Ctrl-C ends it."""
     if find_spec("solara") is None:
         raise InputError("explore", "solara", "is not installed: pip install 'kswarms[explore]'")
-    from scenarios.explore.server import serve
-    from scenarios.explore.session import Session
+    from kswarms.scenarios.explore.server import serve
+    from kswarms.scenarios.explore.session import Session
 
     start = asked(what, run)
     Session(start).close()  # a mistake is told here, not in the page

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
-from agents.errors import InputError
-from scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Watched, one_run
-from scenarios.cli.progress import tracked
-from scenarios.runner import name_of, naming
+from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Watched, one_run
+from kswarms.scenarios.cli.progress import tracked
+from kswarms.scenarios.runs.sweep import name_of, naming
 
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-    from analysis.arena import ArenaPainter
-    from scenarios.explore.player import Picture, Player
+    from kswarms.analysis.film.painter import ArenaPainter
+    from kswarms.scenarios.watch.player import Picture, Player
 
 _MOST_PICTURES: Final = 100_000
 """Of a film: over an hour at the usual 20 a second."""
@@ -67,8 +67,8 @@ def film(
     name = name.replace("/", "-")  # a curve may be called as its user likes
     out = out or Path(f"{name}{'.mp4' if sheet is None else '.png'}")
 
-    from analysis.film import check_film, write_film, write_sheet
-    from scenarios.explore.player import Player
+    from kswarms.analysis.film.files import check_film, write_film, write_sheet
+    from kswarms.scenarios.watch.player import Player
 
     if sheet is None:
         check_film(out)
@@ -101,7 +101,7 @@ def _check(field: str, value: object, allowed: bool, rule: str) -> None:
 
 def _pictures(player: "Player", instants: list[float], size: int, played: str) -> Iterator["Image"]:
     """Play to each instant and paint it; the end of the game is the last, if it comes before."""
-    from analysis.arena import ArenaPainter, Ground
+    from kswarms.analysis.film.painter import ArenaPainter, Ground
 
     arena = player.model.arena
     ground = Ground(

@@ -6,10 +6,10 @@ from typing import Annotated, Final
 
 import typer
 
-from agents.errors import InputError
-from scenarios.catalogue import CATALOGUE, TABLES
-from scenarios.choice import FIRST_SCENARIO, USUAL_N, chosen
-from scenarios.runs import LAST_SEED, Run, digest
+from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.catalogue import CATALOGUE, TABLES
+from kswarms.scenarios.catalogue.selecting import FIRST_SCENARIO, USUAL_N, chosen
+from kswarms.scenarios.runs.run import LAST_SEED, Run, digest
 
 MOST_JOBS: Final = 1024
 """Processes at most: of more, no machine has the memory."""
@@ -74,7 +74,7 @@ RunDigest = Annotated[
 
 
 def asked(what: str | None, run: str) -> str | Run:
-    """Return what is to be watched: a scenario as `scenarios.choice.chosen` takes it, or a run.
+    """Return what is to be watched: a scenario as `chosen` takes it, or a run.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def asked(what: str | None, run: str) -> str | Run:
         return what or FIRST_SCENARIO
     if what is None:
         raise InputError("run", run, "needs the directory of results that has it")
-    from scenarios.recorded import recorded_run
+    from kswarms.scenarios.study.find_run import recorded_run
 
     return recorded_run(Path(what), run)
 

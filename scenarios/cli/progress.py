@@ -8,9 +8,9 @@ from typing import Final, TypeVar
 
 import typer
 
-from agents.errors import InputError
-from scenarios.runner import Failure, Result
-from scenarios.runs import Run
+from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.runs.run import Run
+from kswarms.scenarios.runs.sweep import Failure, Result
 
 KINDS: Final = ("bar", "json", "none")
 

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
-from agents.errors import InputError
-from scenarios.catalogue import CATALOGUE, TABLES
-from scenarios.cli.progress import tracked
+from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.catalogue import CATALOGUE, TABLES
+from kswarms.scenarios.cli.progress import tracked
 
 if TYPE_CHECKING:
-    from model.arena import Arena
+    from kswarms.model.description.arena import Arena
 
 _Step = TypeVar("_Step")
 
@@ -36,9 +36,9 @@ def report(
     ] = False,
 ) -> None:
     """Write figures, tables and verdicts of all results into one HTML file that needs no network."""
-    from analysis.findings import FINDINGS, load
-    from analysis.report import Planned
-    from analysis.report import report as report_on
+    from kswarms.analysis.findings import FINDINGS, load
+    from kswarms.analysis.report import Planned
+    from kswarms.analysis.report import report as report_on
 
     path = out or directory / "report.html"
     if out is not None and not path.parent.is_dir():

@@ -8,15 +8,15 @@ from typing import Annotated, Final
 
 import typer
 
-from agents.errors import InputError
-from scenarios.catalogue import CATALOGUE, TABLES
-from scenarios.choice import chosen, integers, planned, words
-from scenarios.cli.options import Jobs, check_seed, directory, processes
-from scenarios.cli.options import ids as ids_to_complete
-from scenarios.cli.printing import print_table
-from scenarios.cli.progress import KINDS, check_kind, told
-from scenarios.description import Scenario
-from scenarios.runner import RECORDS
+from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.catalogue import CATALOGUE, TABLES
+from kswarms.scenarios.catalogue.selecting import chosen, integers, planned, words
+from kswarms.scenarios.cli.options import Jobs, check_seed, directory, processes
+from kswarms.scenarios.cli.options import ids as ids_to_complete
+from kswarms.scenarios.cli.printing import print_table
+from kswarms.scenarios.cli.progress import KINDS, check_kind, told
+from kswarms.scenarios.description.scenario import Scenario
+from kswarms.scenarios.runs.sweep import RECORDS
 
 _NEXT: Final = {
     "report": "all results in one HTML file",
@@ -93,7 +93,7 @@ def run(
     )
     lines = [f"table:  {table}" for table in tables]
     if tables and not no_figures:
-        from analysis.figures import draw
+        from kswarms.analysis.figures.over_n import draw
 
         titles = {scenario.id: scenario.title for scenario in scenarios}
         lines += [f"figure: {picture}" for picture in draw(out, list(titles), titles)]
@@ -119,13 +119,13 @@ def _play(
     command: str,
 ) -> tuple[list[Path], int]:
     """Play what is not played yet; return the tables written and how many runs failed."""
-    from scenarios.study import Study
+    from kswarms.scenarios.study.study import Study
 
     failed = 0
     with ExitStack() as stack:
         executor = None
         if scheduler is not None:
-            from scenarios.cluster import connected
+            from kswarms.scenarios.runs.dask import connected
 
             executor, jobs = stack.enter_context(connected(scheduler))
         study = stack.enter_context(Study(out, command))
@@ -151,8 +151,8 @@ def _play(
 
 
 def _print_table(table_id: str, out: Path) -> None:
-    from analysis.results import read_policies
-    from analysis.tables import learned, printed
+    from kswarms.analysis.results.runs import read_policies
+    from kswarms.analysis.tables.learned import learned, printed
 
     title, scenarios = TABLES[table_id]
     text = printed(learned(read_policies(out), scenarios))

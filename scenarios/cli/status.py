@@ -5,18 +5,18 @@ from typing import Annotated
 
 import typer
 
-from scenarios.cli.printing import print_columns
-from scenarios.cli.progress import clock
+from kswarms.scenarios.cli.printing import print_columns
+from kswarms.scenarios.cli.progress import clock
 
 Directory = Annotated[Path, typer.Argument(metavar="DIR", help="What `kswarms run --out` wrote.")]
 
 
 def status(directory: Directory) -> None:
     """Tell what is done, what failed and why, what is missing, and what it took."""
-    from scenarios.database import FILE
-    from scenarios.ledger import Ledger
-    from scenarios.overview import by_scenario, codes, failures, in_all
-    from scenarios.study import holder, replay_command
+    from kswarms.scenarios.study.database import FILE
+    from kswarms.scenarios.study.ledger import Ledger
+    from kswarms.scenarios.study.study import holder, replay_command
+    from kswarms.scenarios.study.summary import by_scenario, codes, failures, in_all
 
     with Ledger(directory / FILE) as ledger:
         heads = ("scenario", "done", "failed", "missing", "CPU time")
@@ -44,9 +44,9 @@ def replay(
     wanted: Annotated[str, typer.Argument(metavar="RUN", help="A run of its tables: the column `run`.")],
 ) -> int:
     """Play one run again, print what comes out of it, and tell whether DIR has the same. Write nothing."""
-    from scenarios.database import FILE
-    from scenarios.ledger import Ledger
-    from scenarios.runner import name_of, play
+    from kswarms.scenarios.runs.sweep import name_of, play
+    from kswarms.scenarios.study.database import FILE
+    from kswarms.scenarios.study.ledger import Ledger
 
     with Ledger(directory / FILE) as ledger:
         run = ledger.run(wanted)

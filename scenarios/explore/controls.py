@@ -6,17 +6,17 @@ from typing import Any, Final
 
 import solara
 
-from agents.body import BODIES
-from agents.errors import InputError
-from agents.policies import ALIASES, POLICIES
-from agents.rewards import REWARDS
-from agents.selection import RULES
-from model.arena import LAYOUTS
-from model.parameters import Parameters, parse_parameters
-from scenarios.catalogue import CATALOGUE
-from scenarios.explore.form import learning_of
-from scenarios.explore.session import Act, Session
-from scenarios.explore.views import colour_of
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.learning.rewards import REWARDS
+from kswarms.agents.learning.selection_rules import RULES
+from kswarms.agents.policies.registry import ALIASES, POLICIES
+from kswarms.agents.robot.body import BODIES
+from kswarms.model.description.arena import LAYOUTS
+from kswarms.model.description.parameters import Parameters, parse_parameters
+from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.explore.form import learning_of
+from kswarms.scenarios.explore.session import Act, Session
+from kswarms.scenarios.explore.views import colour_of
 
 MOST_ROBOTS: Final = 100
 _SLIDERS: Final = {

@@ -2,19 +2,19 @@
 
 from typing import Any, Final, Literal, NamedTuple, Self
 
-from agents.actions import Action
-from agents.calls import parse_call
-from agents.errors import InputError
-from agents.policies import parts
-from agents.rewards import REWARDS
-from agents.selection import RULES
-from model.game import Game
-from model.parameters import PRESETS, Parameters, parse_parameters
-from scenarios.description import Condition, SwarmRule
+from kswarms.agents.actions import Action
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.learning.rewards import REWARDS
+from kswarms.agents.learning.selection_rules import RULES
+from kswarms.agents.policies.registry import parts
+from kswarms.agents.user_code.syntax import parse_call
+from kswarms.model.description.game import Game
+from kswarms.model.description.parameters import PRESETS, Parameters, parse_parameters
+from kswarms.scenarios.description.scenario import Condition, SwarmRule
 
 
 class SwarmForm(NamedTuple):
-    """The controls of one swarm, as the fields of `scenarios.description.SwarmRule`."""
+    """The controls of one swarm, as the fields of `kswarms.scenarios.description.scenario.SwarmRule`."""
 
     policy: str = "avoid"
     share: int = 1
@@ -32,11 +32,11 @@ class Form(NamedTuple):
     n, seed : int
         Robots in all; seed.
     layout, body, parameters, actions, learning, duration, multiple_of
-        As in `scenarios.description.Condition`.
+        As in `kswarms.scenarios.description.scenario.Condition`.
     puck_limit, supply : int
         Likewise; 0 for no limit.
     absent, absent_from
-        As in `model.game.Game`.
+        As in `kswarms.model.description.game.Game`.
     """
 
     swarms: tuple[SwarmForm, ...]
@@ -220,6 +220,6 @@ def with_learning(policy: str, part: str, name: str = "", **arguments: float) ->
 
 
 def _write(name: str, arguments: dict[str, Any]) -> str:
-    """Write a call as `agents.calls.parse_call` reads it."""
+    """Write a call as `kswarms.agents.user_code.syntax.parse_call` reads it."""
     inside = ", ".join(f"{key}={value!r}" for key, value in arguments.items())
     return f"{name}({inside})" if inside else name

@@ -12,12 +12,12 @@ from typing import Any, Final
 
 import solara
 
-from scenarios.choice import FIRST_SCENARIO
-from scenarios.explore.controls import Controls
-from scenarios.explore.panels import Panels
-from scenarios.explore.session import SPEEDS, Act, Session
-from scenarios.explore.views import Json, frame_of, scene_of
-from scenarios.runs import Run
+from kswarms.scenarios.catalogue.selecting import FIRST_SCENARIO
+from kswarms.scenarios.explore.controls import Controls
+from kswarms.scenarios.explore.panels import Panels
+from kswarms.scenarios.explore.session import SPEEDS, Act, Session
+from kswarms.scenarios.explore.views import Json, frame_of, scene_of
+from kswarms.scenarios.runs.run import Run
 
 FASTEST: Final = 1 / 25
 """Between two frames, at least (s)."""

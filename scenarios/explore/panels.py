@@ -6,10 +6,10 @@ from typing import Final
 
 import solara
 
-from scenarios.explore.robot import RobotView
-from scenarios.explore.session import Act, Session
-from scenarios.explore.views import Json, curves_of
-from scenarios.replay import TOLD, Arm, ConflictAccount, number, told
+from kswarms.scenarios.explore.session import Act, Session
+from kswarms.scenarios.explore.views import Json, curves_of
+from kswarms.scenarios.watch.conflicts import TOLD, Arm, ConflictAccount, number, told
+from kswarms.scenarios.watch.robot_view import RobotView
 
 _CONFLICTS_SHOWN: Final = 60
 

@@ -8,8 +8,8 @@ import webbrowser
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from agents.errors import InputError
-from scenarios.runs import Run
+from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.runs.run import Run
 
 if TYPE_CHECKING:
     import uvicorn
@@ -23,7 +23,7 @@ def serve(start: str | Run, port: int, open_browser: bool, ready: Callable[[str]
     Parameters
     ----------
     start : str or Run
-        What a new page begins with, as `scenarios.explore.session.Session` takes it.
+        What a new page begins with, as `kswarms.scenarios.explore.session.Session` takes it.
     port : int
         Where; 0 for any that is free.
     open_browser : bool
@@ -63,7 +63,7 @@ def _listen(port: int) -> socket.socket:
 
 def _server(start: str | Run) -> "uvicorn.Server":
     """Return the server of the page, set up to speak to this machine alone."""
-    os.environ["SOLARA_APP"] = "scenarios.explore.page"
+    os.environ["SOLARA_APP"] = "kswarms.scenarios.explore.page"
     import uvicorn
     from solara.server import settings
 
@@ -73,7 +73,7 @@ def _server(start: str | Run) -> "uvicorn.Server":
     settings.theme.title = "kswarms explore"
     from solara.server.starlette import app
 
-    from scenarios.explore import page
+    from kswarms.scenarios.explore import page
 
     page.start = start
     return uvicorn.Server(uvicorn.Config(app, log_level="error", access_log=False))

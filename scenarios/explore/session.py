@@ -9,14 +9,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, Final
 
-from agents.errors import InputError
-from agents.learner import Learner
-from scenarios.choice import USUAL_N, chosen, integers
-from scenarios.description import Condition
-from scenarios.explore.form import Form, SwarmForm, with_learning, with_parameter
-from scenarios.explore.player import Player
-from scenarios.runner import naming
-from scenarios.runs import Run
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.policies.learner import Learner
+from kswarms.scenarios.catalogue.selecting import USUAL_N, chosen, integers
+from kswarms.scenarios.description.scenario import Condition
+from kswarms.scenarios.explore.form import Form, SwarmForm, with_learning, with_parameter
+from kswarms.scenarios.runs.run import Run
+from kswarms.scenarios.runs.sweep import naming
+from kswarms.scenarios.watch.player import Player
 
 Act = Callable[[Callable[[], None]], None]
 """Does something to a session, and has the page shown anew."""
@@ -35,7 +35,7 @@ class Session:
     Parameters
     ----------
     start : str or Run
-        What it begins with: a scenario as `scenarios.choice.chosen` takes it, or a run.
+        What it begins with: a scenario as `kswarms.scenarios.catalogue.selecting.chosen` takes it, or a run.
 
     Attributes
     ----------
@@ -146,7 +146,7 @@ class Session:
             self.change(self.form._replace(parameters=with_parameter(self.form.parameters, name, value)))
 
     def change_learning(self, part: str, name: str = "", **arguments: float) -> None:
-        """Change the reward or the rule of all learners, as `scenarios.explore.form.with_learning`."""
+        """Change the reward or the rule of all learners, as `form.with_learning` does."""
         with self._told():
             swarms = (
                 swarm._replace(policy=with_learning(swarm.policy, part, name, **arguments))

@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
-from analysis.arena import SWARM_COLOURS
-from scenarios.explore.player import Player, Sample
+from kswarms.analysis.film.painter import SWARM_COLOURS
+from kswarms.scenarios.watch.player import Player, Sample
 
 Json = dict[str, Any]
 

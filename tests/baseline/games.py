@@ -12,14 +12,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Final
 
-from agents.actions import Action
-from model.foraging import GameModel
-from model.game import Game, Swarm
-from model.parameters import parse_parameters
-from model.recording import save_policies
-from scenarios.catalogue import CATALOGUE
-from scenarios.runner import play
-from scenarios.runs import Run, digest
+from kswarms.agents.actions import Action
+from kswarms.model.description.game import Game, Swarm
+from kswarms.model.description.parameters import parse_parameters
+from kswarms.model.game_model import GameModel
+from kswarms.model.recorder import save_policies
+from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.runs.run import Run, digest
+from kswarms.scenarios.runs.sweep import play
 
 FILE: Final = Path(__file__).with_name("digests.json")
 RECORDS: Final = "conflicts,robots,trajectory"

@@ -17,6 +17,6 @@ def test_every_game_is_as_it_was(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_games_of_every_kind_are_as_they_were(tmp_path: Path) -> None:
-    few = [game for game in catalogue_games() if game[0].endswith("n=6/seed=0") and game[1].puck_limit is None]
+    few = [each for each in catalogue_games() if each[0].endswith("n=6/seed=0") and not each[1].puck_limit]
     found = dict(digests([*few, *other_games(tmp_path)]))
     assert found == {name: KNOWN[name] for name in found}

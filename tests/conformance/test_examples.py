@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from agents.conformance import POLICY_CHECKS, REWARD_CHECKS, RULE_CHECKS
-from agents.outside import load_class
-from agents.policies import make_policy
-from agents.rewards import WLU
-from agents.selection import Greedy
+from kswarms.agents.conformance import POLICY_CHECKS, REWARD_CHECKS, RULE_CHECKS
+from kswarms.agents.learning.rewards import WLU
+from kswarms.agents.learning.selection_rules import Greedy
+from kswarms.agents.policies.registry import make_policy
+from kswarms.agents.user_code.loading import load_class
 
 Check = Callable[[Any], None]
 POLICIES = [

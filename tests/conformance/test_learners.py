@@ -1,6 +1,6 @@
 """What every policy must do: a new one in `POLICIES` is checked by all of this without another line.
 
-What is asked of users' policies too is in `agents.conformance`; here is what else the package's own do.
+What users' policies must do too is in `kswarms.agents.conformance`. Here are the checks of the package's own.
 Policies that learn are checked with every reward and every rule. Each check is a function of what builds a
 policy, and has a policy that it must turn down.
 """
@@ -16,16 +16,16 @@ from typing import Any, Final
 
 import pytest
 
-from agents.actions import AWAY, Action
-from agents.conformance import POLICY_CHECKS
-from agents.conformance.policies import GAMES, TWO, live, setting
-from agents.learned import save
-from agents.learner import Learner
-from agents.policies import POLICIES, make_policy
-from agents.policy import Policy, Setting
-from agents.rewards import REWARDS
-from agents.selection import RULES
-from agents.streams import Purpose
+from kswarms.agents.actions import AWAY, Action
+from kswarms.agents.conformance import POLICY_CHECKS
+from kswarms.agents.conformance.policies import GAMES, TWO, live, setting
+from kswarms.agents.learning.rewards import REWARDS
+from kswarms.agents.learning.selection_rules import RULES
+from kswarms.agents.policies.interface import Policy, Setting
+from kswarms.agents.policies.learner import Learner
+from kswarms.agents.policies.registry import POLICIES, make_policy
+from kswarms.agents.policies.saved import save
+from kswarms.agents.streams import Purpose
 
 Build = Callable[[Setting], Policy]
 

@@ -5,12 +5,12 @@ from typing import Final
 
 import pytest
 
-from agents.actions import AWAY, TOWARDS, Action
-from agents.errors import InputError
-from agents.policies import POLICIES, deal, make_policy
-from agents.policy import Policy, Setting
-from agents.streams import Streams
-from model.game import Game, Swarm
+from kswarms.agents.actions import AWAY, TOWARDS, Action
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.policies.interface import Policy, Setting
+from kswarms.agents.policies.registry import POLICIES, deal, make_policy
+from kswarms.agents.streams import Streams
+from kswarms.model.description.game import Game, Swarm
 
 FLIGHT: Final = Action(name="flight", direction=AWAY, duration=1.8)
 FIGHT: Final = Action(name="fight", direction=TOWARDS, duration=1.0)

@@ -1,6 +1,6 @@
 """What every reward must do: a new one in `REWARDS` is checked by all of this without another line.
 
-What is asked of users' rewards too is in `agents.conformance`; here is what else the package's own do. Each
+What users' rewards must do too is in `kswarms.agents.conformance`. Here are the checks of the package's own.
 check is a function of a reward's class, and has a reward that it must turn down.
 """
 
@@ -13,10 +13,10 @@ from typing import Any, Final
 import pytest
 from pydantic import Field
 
-from agents.conformance import REWARD_CHECKS
-from agents.conformance.rewards import cases
-from agents.errors import InputError
-from agents.rewards import REWARDS, WLU, IndividualUtility, Reward, make_reward
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.conformance import REWARD_CHECKS
+from kswarms.agents.conformance.rewards import cases
+from kswarms.agents.learning.rewards import REWARDS, WLU, IndividualUtility, Reward, make_reward
 
 
 def check_it_is_built_from_its_name(reward: type[Reward]) -> None:

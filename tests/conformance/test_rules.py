@@ -1,6 +1,6 @@
 """What every selection rule must do: a new one in `RULES` is checked by all of this without another line.
 
-What is asked of users' rules too is in `agents.conformance`; here is what else the package's own do. Each
+What users' rules must do too is in `kswarms.agents.conformance`. Here are the checks of the package's own.
 check is a function of a rule's class, and has a rule that it must turn down.
 """
 
@@ -11,11 +11,11 @@ from typing import Any, Final
 import pytest
 from numpy.random import Generator
 
-from agents.bandit import Bandit
-from agents.conformance import RULE_CHECKS
-from agents.conformance.rules import ARMS, draws, play, tried
-from agents.errors import InputError
-from agents.selection import RULES, UCB, Greedy, Rule, UniformRandom, make_rule
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.conformance import RULE_CHECKS
+from kswarms.agents.conformance.rules import ARMS, draws, play, tried
+from kswarms.agents.learning.bandit import Bandit
+from kswarms.agents.learning.selection_rules import RULES, UCB, Greedy, Rule, UniformRandom, make_rule
 
 IGNORES_WHAT_IT_KNOWS: Final = {"uniform-random"}
 """Rules that may take a tried arm though others were not, by their own definition (section 1.5)."""

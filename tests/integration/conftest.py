@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from model.foraging import GameModel
-from tests.tiny_study import TINY, Fault
+from kswarms.model.game_model import GameModel
+from tests.helpers.tiny_study import TINY, Fault
 
 
 @pytest.fixture
@@ -38,6 +38,6 @@ def break_games(monkeypatch: pytest.MonkeyPatch) -> Callable[[Fault], None]:
 @pytest.fixture
 def show(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Any]]:
     """Show pages, and close them."""
-    from tests.shown_page import showing  # here, for the other tests do without the extra `explore`
+    from tests.helpers.shown_page import showing  # here, for the other tests do without the extra `explore`
 
     yield from showing(monkeypatch)

@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from agents.body import KREMBOT
-from agents.fleet import Fleet
-from agents.streams import Purpose
-from model.foraging import GameModel
-from model.game import Game, Swarm
-from model.parameters import PRESETS
+from kswarms.agents.robot.body import KREMBOT
+from kswarms.agents.robot.state import Fleet
+from kswarms.agents.streams import Purpose
+from kswarms.model.description.game import Game, Swarm
+from kswarms.model.description.parameters import PRESETS
+from kswarms.model.game_model import GameModel
 
 FITTED = PRESETS["fitted"]
 NEAR = 2 * KREMBOT.radius + KREMBOT.sensing_scale * max(FITTED.flight_range, FITTED.active_range)

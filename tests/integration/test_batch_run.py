@@ -10,7 +10,7 @@ from typing import Any
 import mesa
 import pytest
 
-from model.plain import ForagingModel
+from kswarms.model.foraging import ForagingModel
 
 SCRIPT = """
 import json
@@ -18,7 +18,7 @@ import sys
 
 import mesa
 
-from model.plain import ForagingModel
+from kswarms.model.foraging import ForagingModel
 
 if __name__ == "__main__":
     rows = mesa.batch_run(

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-import analysis.published
-from scenarios.cli import invoke
+from kswarms.analysis.results import published
+from kswarms.scenarios.cli import invoke
 
 TINY = [
     *("calibrate", "--free", "friction,gamma", "--densities", "6", "--seeds", "1", "--generations", "2"),
@@ -20,8 +20,10 @@ TINY = [
 FIT = """
 import math, os, signal, sys
 from pathlib import Path
-from scenarios import calibration_games
-from scenarios.calibration import Setup, calibrate
+from kswarms.analysis.results import published
+from kswarms.scenarios.calibration import games as calibration_games
+from kswarms.analysis.results import published
+from kswarms.scenarios.calibration.fit import Setup, calibrate
 
 calibration_games._SAVE_EVERY = float(sys.argv[3])
 games = 0
@@ -49,8 +51,8 @@ def _in_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 @pytest.fixture
 def one_row(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let Table 6.1 have its first row alone, so that a validation takes seconds."""
-    table = analysis.published.table_6_1().head(1)
-    monkeypatch.setattr(analysis.published, "table_6_1", lambda: table.copy())
+    table = published.table_6_1().head(1)
+    monkeypatch.setattr(published, "table_6_1", lambda: table.copy())
 
 
 def _fit(out: str, games: int, save_every: float = 0.0) -> int:
@@ -82,7 +84,7 @@ def test_calibrate_plays_says_what_it_found_and_does_not_play_again(
     assert all(0 <= error <= 100 for generation in trace["generations"] for error in generation["errors"])
     assert "generation 2 of 2: errors" in printed.err
 
-    monkeypatch.setattr("scenarios.cli.calibrate.play_all", None)  # to be called would be an error
+    monkeypatch.setattr("kswarms.scenarios.cli.calibrate.play_all", None)  # to be called would be an error
     assert invoke(TINY) == 0
     assert capsys.readouterr().out == printed.out
 

@@ -10,17 +10,17 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from scenarios.catalogue import CATALOGUE, TABLES
-from scenarios.cli import invoke
-from scenarios.cli import run as run_command
-from scenarios.description import Scenario
-from scenarios.runner import RunError
-from scenarios.runs import expand
+from kswarms.scenarios.catalogue import CATALOGUE, TABLES
+from kswarms.scenarios.cli import invoke
+from kswarms.scenarios.cli import run as run_command
+from kswarms.scenarios.description.scenario import Scenario
+from kswarms.scenarios.runs.run import expand
+from kswarms.scenarios.runs.sweep import RunError
 
 CONDITIONS = [
     condition.replace(name="") for scenario in CATALOGUE.values() for condition in scenario.conditions
 ]
-KSWARMS = [sys.executable, "-c", "from scenarios.cli import main; main()"]
+KSWARMS = [sys.executable, "-c", "from kswarms.scenarios.cli import main; main()"]
 QUICK = ["--densities", "6", "--seeds", "1", "--jobs", "1", "--no-figures"]
 
 
@@ -55,7 +55,7 @@ def test_list_tells_what_a_scenario_takes_and_counts_shared_runs_once(
 
 def test_list_starts_fast_since_it_imports_nothing_heavy() -> None:
     code = (
-        "import sys; from scenarios.cli import invoke; invoke(['list']); "
+        "import sys; from kswarms.scenarios.cli import invoke; invoke(['list']); "
         "heavy = {'mesa', 'numba', 'pandas', 'pyarrow', 'scipy', 'seaborn', 'simpy'}; "
         "print(*sorted(heavy & set(sys.modules)))"
     )

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.cli import invoke
-from scenarios.database import FILE
+from kswarms.scenarios.cli import invoke
+from kswarms.scenarios.study.database import FILE
 
 QUICK = ["--densities", "6", "--seeds", "1", "--jobs", "1", "--quiet"]
 SCENARIO = """

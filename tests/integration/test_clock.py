@@ -8,11 +8,11 @@ import pytest
 from simpy.core import StopSimulation
 from simpy.events import Timeout
 
-from agents.krembot import Krembot
-from agents.streams import Purpose, stream
-from model.foraging import GameModel, Instant
-from model.game import Game, Swarm
-from model.parameters import PRESETS
+from kswarms.agents.robot.krembot import Krembot
+from kswarms.agents.streams import Purpose, stream
+from kswarms.model.description.game import Game, Swarm
+from kswarms.model.description.parameters import PRESETS
+from kswarms.model.game_model import GameModel, Instant
 
 MOTION = 2
 """SimPy priority of the motion's own waits."""

@@ -12,12 +12,12 @@ from typing import Any
 import pytest
 from distributed import Client, LocalCluster
 
-from agents.errors import InputError
-from scenarios.cli import invoke
-from scenarios.cluster import connected
-from scenarios.description import Condition, Scenario, SwarmRule
-from scenarios.runner import play_all, sweep
-from scenarios.runs import expand
+from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.cli import invoke
+from kswarms.scenarios.description.scenario import Condition, Scenario, SwarmRule
+from kswarms.scenarios.runs.dask import connected
+from kswarms.scenarios.runs.run import expand
+from kswarms.scenarios.runs.sweep import play_all, sweep
 
 SMALL = Scenario(
     id="small",
@@ -106,7 +106,7 @@ def test_a_sweep_that_nobody_listens_to_any_more_leaves_nothing_on_the_cluster(c
 
 
 def test_a_cluster_needs_dask_and_a_scheduler_that_answers(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scenarios.cluster._PATIENCE", 1)
+    monkeypatch.setattr("kswarms.scenarios.runs.dask._PATIENCE", 1)
     with (
         pytest.raises(InputError, match="must be the address of a Dask scheduler"),
         connected("tcp://127.0.0.1:1"),

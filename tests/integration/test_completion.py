@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from scenarios.catalogue import CATALOGUE, TABLES
-from scenarios.cli import invoke
+from kswarms.scenarios.catalogue import CATALOGUE, TABLES
+from kswarms.scenarios.cli import invoke
 
 
 def completed(
@@ -59,7 +59,7 @@ def test_shells_that_show_it_get_the_title_too(
 def test_bash_completes_with_the_script_of_the_documentation(tmp_path: Path) -> None:
     kswarms = tmp_path / "kswarms"
     kswarms.write_text(
-        f"#!/bin/sh\nexec {sys.executable} -c 'from scenarios.cli import main; main()' \"$@\"\n"
+        f"#!/bin/sh\nexec {sys.executable} -c 'from kswarms.scenarios.cli import main; main()' \"$@\"\n"
     )
     kswarms.chmod(0o755)
     script = """

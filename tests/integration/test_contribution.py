@@ -5,7 +5,7 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from scenarios.cli import invoke
+from kswarms.scenarios.cli import invoke
 
 FEW = ["--n", "6", "--seeds", "2", "--jobs", "1"]
 

@@ -9,11 +9,11 @@ from multiprocessing import get_context
 import numpy as np
 import pytest
 
-from model.foraging import GameModel
-from model.game import Game, Swarm
-from model.parameters import PRESETS
-from model.plain import ForagingModel
-from model.recording import RECORDS
+from kswarms.model.description.game import Game, Swarm
+from kswarms.model.description.parameters import PRESETS
+from kswarms.model.foraging import ForagingModel
+from kswarms.model.game_model import GameModel
+from kswarms.model.recorder import RECORDS
 
 ALL = ",".join(RECORDS)
 

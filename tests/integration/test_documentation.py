@@ -11,8 +11,8 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from analysis.findings import FINDINGS
-from scenarios.cli import invoke
+from kswarms.analysis.findings import FINDINGS
+from kswarms.scenarios.cli import invoke
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"

@@ -15,8 +15,8 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
-from scenarios.cli import invoke
-from tests.interrupts import heed_interrupts
+from kswarms.scenarios.cli import invoke
+from tests.helpers.interrupts import heed_interrupts
 
 pytest.importorskip("solara", reason="needs the extra `explore`")
 webdriver = pytest.importorskip("selenium.webdriver", reason="needs selenium, of the extra `test`")
@@ -39,7 +39,7 @@ PATIENCE = 40.0
 @contextmanager
 def served(*arguments: str) -> Iterator[str]:
     """Start the command and give the address that it prints."""
-    code = "from scenarios.cli import main; main()"
+    code = "from kswarms.scenarios.cli import main; main()"
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path)}
     command = [sys.executable, "-W", "error::DeprecationWarning:scenarios", "-c", code]
     server = subprocess.Popen(

@@ -9,8 +9,8 @@ pytest.importorskip("solara", reason="needs the extra `explore`")
 
 import ipyvuetify  # which comes with solara
 
-from agents.selection import UCB
-from tests.shown_page import Shown, unfold, wait
+from kswarms.agents.learning.selection_rules import UCB
+from tests.helpers.shown_page import Shown, unfold, wait
 
 
 def test_learning_can_be_skipped_and_its_controls_change_it(show: Callable[[str], Shown]) -> None:

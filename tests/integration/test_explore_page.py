@@ -12,13 +12,13 @@ pytest.importorskip("solara", reason="needs the extra `explore`")
 
 import ipyvuetify  # which comes with solara
 
-from agents.errors import InputError
-from agents.selection import UCB
-from scenarios.catalogue import CATALOGUE
-from scenarios.explore import page
-from scenarios.explore.session import Session
-from scenarios.runs import Run, digest
-from tests.shown_page import Shown, unfold, wait
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.learning.selection_rules import UCB
+from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.explore import page
+from kswarms.scenarios.explore.session import Session
+from kswarms.scenarios.runs.run import Run, digest
+from tests.helpers.shown_page import Shown, unfold, wait
 
 
 def test_the_page_shows_the_arena_the_controls_and_the_curves(show: Callable[[str], Shown]) -> None:
@@ -157,7 +157,7 @@ def test_a_page_is_served_where_it_is_said_to_be(monkeypatch: pytest.MonkeyPatch
     import uvicorn
     from solara.server import settings
 
-    from scenarios.explore import server
+    from kswarms.scenarios.explore import server
 
     told, opened = threading.Event(), threading.Event()
     lines: list[str] = []

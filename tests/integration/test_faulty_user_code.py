@@ -6,21 +6,21 @@ from pathlib import Path
 
 import pytest
 
-from agents.errors import InputError
-from model.foraging import GameModel
-from model.plain import ForagingModel
-from model.recording import save_policies
-from scenarios.cli import invoke
-from scenarios.database import FILE
-from scenarios.ledger import Ledger
-from scenarios.overview import failures
+from kswarms.agents.common.errors import InputError
+from kswarms.model.foraging import ForagingModel
+from kswarms.model.game_model import GameModel
+from kswarms.model.recorder import save_policies
+from kswarms.scenarios.cli import invoke
+from kswarms.scenarios.study.database import FILE
+from kswarms.scenarios.study.ledger import Ledger
+from kswarms.scenarios.study.summary import failures
 
 POLICY = """
 import os
 import sys
 from pathlib import Path
 
-from agents.actions import Action
+from kswarms.agents.actions import Action
 from simpy.core import StopSimulation
 
 
@@ -36,7 +36,7 @@ class Faulty:
         return self.actions[0]
 """
 REWARD = """
-from agents.rewards import Reward
+from kswarms.agents.learning.rewards import Reward
 
 
 class Faulty(Reward):
@@ -44,7 +44,7 @@ class Faulty(Reward):
         return FAULT if t_p not in (0.0, 6.0) else 1.0
 """
 RULE = """
-from agents.selection import Rule
+from kswarms.agents.learning.selection_rules import Rule
 
 
 class Faulty(Rule):

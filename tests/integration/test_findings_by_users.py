@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from scenarios.cli.app import invoke
+from kswarms.scenarios.cli.app import invoke
 
 PAGE = Path(__file__).parents[2] / "docs" / "findings.md"
 

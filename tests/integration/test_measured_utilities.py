@@ -6,20 +6,20 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from agents.theory.swarms import (
+from kswarms.agents.theory.swarms import (
     is_zero_sum_between,
     is_zero_sum_difference,
     sum_of_differences,
     swarm_utility_difference,
 )
-from analysis.records import read_conflicts
-from analysis.utilities import robot_utilities, swarm_utilities
-from model.foraging import GameModel
-from model.game import Game, Swarm
-from scenarios.description import Condition, Scenario, SwarmRule
-from scenarios.runner import play
-from scenarios.runs import expand
-from scenarios.study import Study
+from kswarms.analysis.measures.utilities import robot_utilities, swarm_utilities
+from kswarms.analysis.results.records import read_conflicts
+from kswarms.model.description.game import Game, Swarm
+from kswarms.model.game_model import GameModel
+from kswarms.scenarios.description.scenario import Condition, Scenario, SwarmRule
+from kswarms.scenarios.runs.run import expand
+from kswarms.scenarios.runs.sweep import play
+from kswarms.scenarios.study.study import Study
 
 ALPHA = {1: 0.5, 2: 1.0, 3: 2.0}
 BETA = {(k, m): 1.0 + 0.1 * k + 0.01 * m for k in (1, 2, 3) for m in (1, 2, 3)}

@@ -10,14 +10,14 @@ from typing import Any
 import pytest
 from simpy.core import StopSimulation
 
-from agents.actions import AWAY, TOWARDS, Action
-from agents.fleet import ACTION
-from agents.policies import describe
-from model.foraging import GameModel
-from model.game import Game, Swarm
-from model.parameters import PRESETS
-from model.plain import ForagingModel
-from model.recording import policy_rows
+from kswarms.agents.actions import AWAY, TOWARDS, Action
+from kswarms.agents.policies.registry import describe
+from kswarms.agents.robot.state import ACTION
+from kswarms.model.description.game import Game, Swarm
+from kswarms.model.description.parameters import PRESETS
+from kswarms.model.foraging import ForagingModel
+from kswarms.model.game_model import GameModel
+from kswarms.model.recorder import policy_rows
 
 LEARNING, MEASURED = 120.0, 60.0
 SWITCH = 1200

@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from benchmarks import report as study
-from scenarios.catalogue import CATALOGUE
-from scenarios.cli import invoke
-from tests.unit.test_analysis_figures import runs_of
-from tests.unit.test_analysis_records import MET, robots
-from tests.unit.test_analysis_report import Page
+from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.cli import invoke
+from tests.helpers.html_page import Page
+from tests.helpers.result_rows import MET, robots, runs_of
 
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
@@ -45,7 +44,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a directory with the records of two short games of a scenario with a learner."""
-    from scenarios.study import Study
+    from kswarms.scenarios.study.study import Study
 
     scenario = CATALOGUE["fig-6.4b"]
     condition = scenario.conditions[0].replace(learning=30, duration=30)

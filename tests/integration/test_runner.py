@@ -17,16 +17,16 @@ from pathlib import Path
 import mesa
 import pytest
 
-from model.foraging import GameModel
-from scenarios import workers
-from scenarios.catalogue import CATALOGUE
-from scenarios.runner import RECORDS, Failure, Outcome, RunError, attempt, play, play_all, sweep
-from scenarios.runs import Run, expand
+from kswarms.model.game_model import GameModel
+from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.runs import processes as workers
+from kswarms.scenarios.runs.run import Run, expand
+from kswarms.scenarios.runs.sweep import RECORDS, Failure, Outcome, RunError, attempt, play, play_all, sweep
 
 IMPORTS = """
-from scenarios.catalogue import CATALOGUE
-from scenarios.runner import play_all
-from scenarios.runs import expand
+from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.runs.sweep import play_all
+from kswarms.scenarios.runs.run import expand
 """
 """With which the scripts of these tests begin."""
 

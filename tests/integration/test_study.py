@@ -10,16 +10,16 @@ import mesa
 import pyarrow.parquet as pq
 import pytest
 
-from model.foraging import GameModel
-from model.plain import ForagingModel
-from scenarios import runs as runs_module
-from scenarios.cli import invoke
-from scenarios.database import FILE
-from scenarios.ledger import Ledger, find_run
-from scenarios.runner import Failure, play
-from scenarios.runs import expand
-from scenarios.study import Study
-from tests.tiny_study import RUN, TINY, Fault, sessions
+from kswarms.model.foraging import ForagingModel
+from kswarms.model.game_model import GameModel
+from kswarms.scenarios.cli import invoke
+from kswarms.scenarios.runs import run as runs_module
+from kswarms.scenarios.runs.run import expand
+from kswarms.scenarios.runs.sweep import Failure, play
+from kswarms.scenarios.study.database import FILE
+from kswarms.scenarios.study.ledger import Ledger, find_run
+from kswarms.scenarios.study.study import Study
+from tests.helpers.tiny_study import RUN, TINY, Fault, sessions
 
 pytestmark = pytest.mark.usefixtures("with_a_file_of_scenarios")
 

@@ -11,15 +11,15 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from agents.errors import InputError
-from scenarios import runs as runs_module
-from scenarios import study as study_module
-from scenarios.cli import invoke
-from scenarios.database import FILE
-from scenarios.description import Condition, SwarmRule
-from scenarios.ledger import find_run
-from scenarios.study import LOCK, Study, holder
-from tests.tiny_study import RUN, TINY, contents, sessions
+from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.cli import invoke
+from kswarms.scenarios.description.scenario import Condition, SwarmRule
+from kswarms.scenarios.runs import run as runs_module
+from kswarms.scenarios.study import study as study_module
+from kswarms.scenarios.study.database import FILE
+from kswarms.scenarios.study.ledger import find_run
+from kswarms.scenarios.study.study import LOCK, Study, holder
+from tests.helpers.tiny_study import RUN, TINY, contents, sessions
 
 pytestmark = pytest.mark.usefixtures("with_a_file_of_scenarios")
 
@@ -139,8 +139,8 @@ def test_runs_of_another_version_are_refused(
 ) -> None:
     assert invoke([*RUN, "--seeds", "1"]) == 0
     before = contents("results")
-    for module in ("scenarios.runs", "scenarios.ledger", "scenarios.study"):
-        monkeypatch.setattr(f"{module}.package_version", lambda: "9.0.0")
+    for module in ("runs.run", "study.ledger", "study.study"):
+        monkeypatch.setattr(f"kswarms.scenarios.{module}.package_version", lambda: "9.0.0")
     version = runs_module.version("kswarms")
     assert invoke(RUN) == 2
     assert capsys.readouterr().err == (
@@ -153,7 +153,7 @@ def test_runs_of_other_code_are_told_of(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with monkeypatch.context() as patch:
-        for module in ("scenarios.ledger", "scenarios.runner"):
+        for module in ("kswarms.scenarios.study.ledger", "kswarms.scenarios.runs.sweep"):
             patch.setattr(f"{module}.code_version", lambda: "0.1.0 before")
         assert invoke([*RUN, "--seeds", "1"]) == 0
         assert capsys.readouterr().err == ""

@@ -15,19 +15,19 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from model.foraging import GameModel
-from scenarios.cli import invoke
-from scenarios.database import FILE
-from scenarios.study import Study
-from tests.interrupts import heed_interrupts
-from tests.tiny_study import RUN, TINY, Fault, contents, sessions, undisturbed
+from kswarms.model.game_model import GameModel
+from kswarms.scenarios.cli import invoke
+from kswarms.scenarios.study.database import FILE
+from kswarms.scenarios.study.study import Study
+from tests.helpers.interrupts import heed_interrupts
+from tests.helpers.tiny_study import RUN, TINY, Fault, contents, sessions, undisturbed
 
 pytestmark = pytest.mark.usefixtures("with_a_file_of_scenarios")
 
 INTERRUPTED = ["kswarms: results keeps what was played; the same command goes on", "kswarms: interrupted"]
 NOBODY = 99_999_999
 """Number that no process has."""
-KSWARMS = [sys.executable, "-m", "scenarios.cli"]
+KSWARMS = [sys.executable, "-m", "kswarms.scenarios.cli"]
 
 
 @pytest.mark.parametrize("moments", [5, pytest.param(50, marks=pytest.mark.full)])

@@ -10,8 +10,8 @@ import mesa
 import pyarrow.parquet as pq
 import pytest
 
-from model.plain import ForagingModel
-from scenarios.cli import invoke
+from kswarms.model.foraging import ForagingModel
+from kswarms.scenarios.cli import invoke
 
 EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
 TEXTS = [
@@ -22,7 +22,7 @@ TEXTS = [
 SWEEP = """
 import json, sys
 import mesa
-from model.plain import ForagingModel
+from kswarms.model.foraging import ForagingModel
 
 if __name__ == "__main__":
     sweep = json.loads(sys.argv[1])

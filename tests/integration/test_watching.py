@@ -8,14 +8,14 @@ import pyarrow.parquet as pq
 import pytest
 from PIL import Image
 
-from agents.errors import InputError
-from scenarios.catalogue import CATALOGUE
-from scenarios.cli import invoke
-from scenarios.contribution import SCHEMA
-from scenarios.ledger import find_run
-from scenarios.recorded import recorded_run
-from scenarios.replay import TOLD, conflicts_of
-from scenarios.runs import digest
+from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.cli import invoke
+from kswarms.scenarios.contribution.games import SCHEMA
+from kswarms.scenarios.runs.run import digest
+from kswarms.scenarios.study.find_run import recorded_run
+from kswarms.scenarios.study.ledger import find_run
+from kswarms.scenarios.watch.conflicts import TOLD, conflicts_of
 
 
 @pytest.fixture(autouse=True)
@@ -213,7 +213,7 @@ def test_a_run_has_its_own_condition_size_and_seed(capsys: pytest.CaptureFixture
 def test_without_its_extra_explore_says_how_to_install_it(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(sys.modules["scenarios.cli.explore"], "find_spec", lambda _: None)
+    monkeypatch.setattr(sys.modules["kswarms.scenarios.cli.explore"], "find_spec", lambda _: None)
     assert invoke(["explore"]) == 2
     assert capsys.readouterr().err == (
         "kswarms: explore='solara': is not installed: pip install 'kswarms[explore]'\n"

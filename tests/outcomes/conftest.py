@@ -6,11 +6,11 @@ from functools import cache
 import pandas as pd
 import pytest
 
-from analysis.results import Results
-from scenarios.catalogue import CATALOGUE
-from scenarios.runner import play_all
-from scenarios.runs import expand
-from scenarios.tables import tabulate
+from kswarms.analysis.results.runs import Results
+from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.runs.run import expand
+from kswarms.scenarios.runs.sweep import play_all
+from kswarms.scenarios.study.parquet import tabulate
 
 Play = Callable[[tuple[str, ...], tuple[int, ...], int, int], Results]
 

@@ -6,13 +6,13 @@ from typing import Final
 import pandas as pd
 import pytest
 
-from analysis.fidelity import against_argos
-from scenarios.catalogue import CATALOGUE
-from scenarios.catalogue.argos import DENSITIES
-from scenarios.description import Scenario
-from scenarios.runner import play_all
-from scenarios.runs import expand
-from scenarios.tables import tabulate
+from kswarms.analysis.tables.fidelity import against_argos
+from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.catalogue.argos import DENSITIES
+from kswarms.scenarios.description.scenario import Scenario
+from kswarms.scenarios.runs.run import expand
+from kswarms.scenarios.runs.sweep import play_all
+from kswarms.scenarios.study.parquet import tabulate
 
 pytestmark = pytest.mark.slow
 

@@ -14,11 +14,11 @@ import pytest
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from agents.krembot import Krembot
-from agents.streams import Purpose, stream
-from model.foraging import GameModel
-from model.game import Game, Swarm
-from model.parameters import PRESETS
+from kswarms.agents.robot.krembot import Krembot
+from kswarms.agents.streams import Purpose, stream
+from kswarms.model.description.game import Game, Swarm
+from kswarms.model.description.parameters import PRESETS
+from kswarms.model.game_model import GameModel
 
 Values = NDArray[np.float64]
 
@@ -170,7 +170,7 @@ def exchange_draws(model: GameModel, exchange: Exchange, monkeypatch: pytest.Mon
     """Let all robots that draw from now on draw what their twins would."""
     n = model.game.size
     monkeypatch.setattr(
-        "agents.streams.stream",
+        "kswarms.agents.streams.stream",
         lambda seed, robot, purpose: Exchanged(
             exchange, stream(seed, exchange.twins(robot, n), purpose), purpose
         ),

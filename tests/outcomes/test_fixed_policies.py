@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import pytest
 
-from analysis.findings import FAILS, FINDINGS, HOLDS, judge
-from analysis.results import Results
+from kswarms.analysis.findings import FAILS, FINDINGS, HOLDS, judge
+from kswarms.analysis.results.runs import Results
 
 pytestmark = pytest.mark.slow
 

@@ -9,9 +9,9 @@ from typing import Any, Final, NamedTuple
 
 import pytest
 
-from analysis.findings import FAILS, FINDINGS, HOLDS, Finding, Verdict, judge
-from analysis.results import Results
-from analysis.tables import learned
+from kswarms.analysis.findings import FAILS, FINDINGS, HOLDS, Finding, Verdict, judge
+from kswarms.analysis.results.runs import Results
+from kswarms.analysis.tables.learned import learned
 
 LEARNING: Final = (("fig-6.4a", "fig-6.4b"), ("fig-6.6", "fig-6.7", "fig-6.8"))
 """Scenarios of learners that learn about others alone, and of those that learn about their own swarm."""

@@ -10,12 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.distance import pdist
 
-from agents.body import KREMBOT_SIM, SENSORS
-from agents.fleet import ACTION, Floats, Integers
-from model.game import Game, Swarm
-from model.parameters import PRESETS
-from model.percepts import CONFLICT, HOMING, PICK_UP
-from model.world import WORLD
+from kswarms.agents.common.arrays import Floats, Integers
+from kswarms.agents.robot.body import KREMBOT_SIM, SENSORS
+from kswarms.agents.robot.state import ACTION
+from kswarms.model.description.game import Game, Swarm
+from kswarms.model.description.parameters import PRESETS
+from kswarms.model.kernel.arrays import WORLD
+from kswarms.model.kernel.percepts import CONFLICT, HOMING, PICK_UP
 from tests.reference.contacts import Ground, translate
 from tests.reference.states import Scene, clone, make_scene, mirrored, scenes, unit
 

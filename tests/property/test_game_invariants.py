@@ -9,14 +9,14 @@ from hypothesis import event, example, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.distance import pdist
 
-from agents.actions import TOWARDS
-from agents.fleet import ACTION
-from agents.policies import make_policy
-from agents.policy import Setting
-from agents.streams import Streams
-from model.foraging import GameModel
-from model.game import Game, Swarm, apportion
-from model.parameters import PRESETS
+from kswarms.agents.actions import TOWARDS
+from kswarms.agents.policies.interface import Setting
+from kswarms.agents.policies.registry import make_policy
+from kswarms.agents.robot.state import ACTION
+from kswarms.agents.streams import Streams
+from kswarms.model.description.game import Game, Swarm, apportion
+from kswarms.model.description.parameters import PRESETS
+from kswarms.model.game_model import GameModel
 
 ROUNDING = 1e-9
 POLICIES = ("avoid", "attack", "aggressive", "mixed", "flight", "fight", "aggressive+avoid+attack")

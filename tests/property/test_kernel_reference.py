@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from agents.fleet import IDLE, Fleet, Records
-from model.foraging import GameModel
-from model.game import Game, Swarm
-from model.parameters import PRESETS, Parameters
-from model.percepts import CONFLICT, EVENT, HOMING, LEG_DUE, PICK_UP
-from model.world import WORLD
+from kswarms.agents.common.arrays import Records
+from kswarms.agents.robot.state import IDLE, Fleet
+from kswarms.model.description.game import Game, Swarm
+from kswarms.model.description.parameters import PRESETS, Parameters
+from kswarms.model.game_model import GameModel
+from kswarms.model.kernel.arrays import WORLD
+from kswarms.model.kernel.percepts import CONFLICT, EVENT, HOMING, LEG_DUE, PICK_UP
 from tests.reference.compare import assert_same_events, assert_same_state, compared
 from tests.reference.kernel import Event, ReferenceKernel, State
 from tests.reference.states import Scene, make_scene, scenes

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from agents.fleet import Floats
-from agents.theory.games import (
+from kswarms.agents.common.arrays import Floats
+from kswarms.agents.theory.games import (
     NormalForm,
     extensive_form,
     fold,
@@ -19,7 +19,7 @@ from agents.theory.games import (
     swarm_payoffs,
     zero_sum,
 )
-from agents.theory.swarms import (
+from kswarms.agents.theory.swarms import (
     dummy_utility,
     is_zero_sum_between,
     is_zero_sum_difference,
@@ -29,7 +29,7 @@ from agents.theory.swarms import (
     swarm_utility_difference,
     utility_between,
 )
-from agents.theory.wlu import (
+from kswarms.agents.theory.wlu import (
     effect_on_opponents,
     effect_on_own_swarm,
     sud_by_parts,

@@ -4,10 +4,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from agents.actions import AWAY, TOWARDS
-from agents.rewards import WLU, IndividualUtility, SingleSwarmWLU
-from agents.theory import times
-from agents.theory.estimates import (
+from kswarms.agents.actions import AWAY, TOWARDS
+from kswarms.agents.learning.rewards import WLU, IndividualUtility, SingleSwarmWLU
+from kswarms.agents.theory import times
+from kswarms.agents.theory.estimates import (
     estimated_wlu,
     identical_swarms_wlu,
     kappa,
@@ -15,9 +15,9 @@ from agents.theory.estimates import (
     program_weight_of_equals,
     sigma,
 )
-from agents.theory.swarms import opponents_utility
-from agents.theory.times import Crowd, Interaction
-from agents.theory.wlu import effect_on_own_swarm, wlu_by_parts
+from kswarms.agents.theory.swarms import opponents_utility
+from kswarms.agents.theory.times import Crowd, Interaction
+from kswarms.agents.theory.wlu import effect_on_own_swarm, wlu_by_parts
 
 seconds = st.floats(0, 600)
 weights = st.floats(0.1, 10)

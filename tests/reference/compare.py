@@ -5,9 +5,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from agents.fleet import Fleet, Records
-from model.kernel import Kernel
-from model.percepts import CONFLICT, HOMING, PICK_UP
+from kswarms.agents.common.arrays import Records
+from kswarms.agents.robot.state import Fleet
+from kswarms.model.kernel.kernel import Kernel
+from kswarms.model.kernel.percepts import CONFLICT, HOMING, PICK_UP
 from tests.reference.kernel import Event, ReferenceKernel, State
 
 PRECISION = 1e-9

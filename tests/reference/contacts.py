@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from agents.fleet import Floats
-from model.relaxation import TOLERANCE
+from kswarms.agents.common.arrays import Floats
+from kswarms.model.kernel.relaxation import TOLERANCE
 
 # How the relaxation goes about it: numbers of the compiled code, which change where a jam comes to rest.
 NO_OVERLAP = 1e-9

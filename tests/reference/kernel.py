@@ -9,11 +9,12 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from agents.body import SENSORS
-from agents.fleet import ACTION, HOME, HOME_TURN, HOMING_ERROR, LEG, LEG_OVER, TURN, Fleet, Floats, Integers
-from model.arena import Arena
-from model.game import Game
-from model.percepts import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE, WALL
+from kswarms.agents.common.arrays import Floats, Integers
+from kswarms.agents.robot.body import SENSORS
+from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, HOMING_ERROR, LEG, LEG_OVER, TURN, Fleet
+from kswarms.model.description.arena import Arena
+from kswarms.model.description.game import Game
+from kswarms.model.kernel.percepts import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE, WALL
 from tests.reference.contacts import Ground, offsets, translate
 
 BEARINGS = 2 * math.pi / SENSORS * np.arange(SENSORS)
@@ -57,7 +58,7 @@ class State:
 
 
 class ReferenceKernel:
-    """Does what `model.kernel.Kernel` does, plainly; the robots' state is handed to each call."""
+    """Does what the compiled `Kernel` does, plainly; the robots' state is handed to each call."""
 
     def __init__(self, game: Game, arena: Arena) -> None:
         parameters, body = game.parameters, game.body_preset

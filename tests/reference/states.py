@@ -7,11 +7,12 @@ import numpy as np
 from hypothesis import strategies as st
 from numpy.typing import ArrayLike
 
-from agents.fleet import ACTION, IDLE, Fleet, Floats, Integers
-from model.arena import Arena
-from model.game import Game, Swarm, apportion
-from model.kernel import Kernel
-from model.parameters import PRESETS
+from kswarms.agents.common.arrays import Floats, Integers
+from kswarms.agents.robot.state import ACTION, IDLE, Fleet
+from kswarms.model.description.arena import Arena
+from kswarms.model.description.game import Game, Swarm, apportion
+from kswarms.model.description.parameters import PRESETS
+from kswarms.model.kernel.kernel import Kernel
 
 _TRIES = 200
 

@@ -8,14 +8,14 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
-from analysis.results import read_policies
 from benchmarks import bench
 from benchmarks import report as report_benchmark
 from benchmarks.bench import Plan, WorkError, count_work, time_game
-from model.foraging import GameModel
-from model.percepts import CONFLICT, WALL
-from scenarios.catalogue import CATALOGUE
-from scenarios.tables import POLICIES, RUNS
+from kswarms.analysis.results.runs import read_policies
+from kswarms.model.game_model import GameModel
+from kswarms.model.kernel.percepts import CONFLICT, WALL
+from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.study.parquet import POLICIES, RUNS
 
 TINY = Plan("avoid,attack", 6, 30.0)
 
@@ -97,7 +97,7 @@ def test_runs_that_are_not_stored_are_noticed(monkeypatch: pytest.MonkeyPatch) -
 
 @pytest.mark.slow
 def test_new_processes_play_games() -> None:
-    code = "from model.plain import ForagingModel\nForagingModel(n=2, record='', duration=1.0).play()"
+    code = "from kswarms import ForagingModel\nForagingModel(n=2, record='', duration=1.0).play()"
     assert bench.peak_memory("pass") < bench.peak_memory(code) < 2000
     assert bench.seconds_to_game(6) > 0
 

@@ -35,8 +35,8 @@ def test_a_page_may_link_to_another_host() -> None:
 def test_the_reference_has_every_public_module() -> None:
     page = pages.reference("agents")
     for name in ("agents", "agents.policies", "agents.conformance", "agents.conformance.rules"):
-        assert f"\n::: {name}\n" in f"{page}\n"
-    assert "::: scenarios.cli.__main__" not in pages.reference("scenarios")
+        assert f"\n::: kswarms.{name}\n" in f"{page}\n"
+    assert "::: kswarms.scenarios.cli.__main__" not in pages.reference("scenarios")
 
 
 @pytest.mark.slow

@@ -1,0 +1,1 @@
+"""What all packages share: errors, validated data, atomic files, compilation, limits."""

@@ -1,0 +1,263 @@
+"""Figures of scenarios over the number of robots, from the rows of `runs.parquet` and `policies.parquet`.
+
+Figures are plain `matplotlib.figure.Figure` objects: no window opens and no global setting changes.
+"""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.figures.files import save
+from kswarms.analysis.figures.style import (
+    DETAILED,
+    Form,
+    Look,
+    curves_of,
+    draw_curves,
+    draw_line,
+    form_of_condition,
+    heading,
+    legend_below,
+    page,
+    scale_from_zero,
+    sheet,
+)
+from kswarms.analysis.results.runs import read_runs
+from kswarms.analysis.tables.learned import named_columns
+
+
+def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "", look: Look = DETAILED) -> Figure:
+    """Draw the pucks deposited in the measured game over the number of robots, for each swarm.
+
+    Parameters
+    ----------
+    runs : pandas.DataFrame
+        Rows of `runs.parquet`, as `kswarms.analysis.results.runs.read_runs` returns them.
+    scenario : str
+        Id of the scenario to draw; its conditions, if several, are drawn as a curve each.
+    title : str
+        What the scenario is, printed after its id.
+    look : Look
+        Colours, and whether intervals and seeds are drawn.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        `runs` has no row of the scenario.
+    """
+    rows = of_scenario(runs, scenario)
+    with page(rows, heading(scenario, title), look=look) as figure:
+        axes = figure.subplots()
+        draw_curves(axes, curves_of(rows, look), "pucks", look)
+        axes.set_ylabel("pucks deposited by the swarm")
+        scale_from_zero(axes, rows["pucks"])
+    return figure
+
+
+def time_shares(runs: pd.DataFrame, scenario: str, title: str = "", look: Look = DETAILED) -> Figure:
+    """Draw the share of time in conflict, T(a) / (T(a) + T(p)), over the number of robots (Fig. 6.3).
+
+    Parameters
+    ----------
+    runs, scenario, title, look
+        As for `pucks_over_n`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Three panels of one scale: all conflicts, those with other swarms, those within the own.
+
+    Raises
+    ------
+    InputError
+        `runs` has no row of the scenario.
+    """
+    rows = with_time_shares(of_scenario(runs, scenario))
+    with page(rows, heading(scenario, title), width=11.0, look=look) as figure:
+        panels: Sequence[Axes] = figure.subplots(1, len(TIME_SHARES), sharey=True)
+        for axes, kind in zip(panels, TIME_SHARES, strict=True):
+            draw_curves(axes, curves_of(rows, look), kind, look)
+            axes.set_title(kind)
+            axes.set_ylabel("share of time, T(a) / (T(a) + T(p))")
+            axes.label_outer()
+        scale_from_zero(panels[0], rows["total"])
+    return figure
+
+
+TIME_SHARES = ("total", "inter-swarm", "intra-swarm")
+"""Kinds of conflict that a swarm's share of time is given for."""
+
+
+def with_time_shares(rows: pd.DataFrame) -> pd.DataFrame:
+    """Add the shares of time in conflict to rows of `runs.parquet`: a column for each of `TIME_SHARES`."""
+    in_conflict = rows["t_a_intra"] + rows["t_a_inter"]
+    times = (in_conflict, rows["t_a_inter"], rows["t_a_intra"])
+    lived = in_conflict + rows["t_p"]
+    return rows.assign(**{kind: time / lived for kind, time in zip(TIME_SHARES, times, strict=True)})
+
+
+def sud_over_n(
+    runs: pd.DataFrame, scenario: str, title: str = "", look: Look = DETAILED, swarm: int = 2
+) -> Figure:
+    """Draw the Swarm Utility Difference (Eq. 3.7) of one swarm over the number of robots.
+
+    Parameters
+    ----------
+    runs, scenario, title, look
+        As for `pucks_over_n`.
+    swarm : int
+        Number of the swarm, 1 … K; the source shows S2.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        `runs` has no row of the scenario, or none of that swarm in it.
+    """
+    rows = of_scenario(runs, scenario)
+    swarms = sorted(set(rows["swarm"]))
+    if swarm not in swarms:
+        raise InputError("swarm", swarm, f"must be one of {', '.join(map(str, swarms))} in {scenario}")
+    rows = rows[rows["swarm"] == swarm]
+    with page(rows, heading(scenario, title), look=look) as figure:
+        axes = figure.subplots()
+        axes.axhline(0, color="0.4", linewidth=1)
+        draw_curves(axes, curves_of(rows, look), "sud", look)
+        axes.set_ylabel(f"SUD of S{swarm} (pucks)")
+    return figure
+
+
+def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[str] = ()) -> Figure:
+    """Draw what robots learned over the number of robots, with what was published as crosses.
+
+    Parameters
+    ----------
+    cells : pandas.DataFrame
+        As `kswarms.analysis.tables.learned.learned` returns them.
+    title : str
+        What they are of.
+    conditions : sequence of str
+        Conditions of another figure, in their order there, whose colours theirs are.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A curve for each scenario, condition, learning swarm and opponent with its 95 % interval; where the
+        source gives numbers, a cross of the same colour on a dotted line.
+    """
+    with sheet(title) as figure:
+        axes = figure.subplots()
+        several = cells.groupby("condition")["opponent"].nunique().max() > 1
+        for place, (name, column) in enumerate(named_columns(cells)):
+            condition, opponent = column["condition"].iloc[0], column["opponent"].iloc[0]
+            index = list(conditions).index(condition) if len(conditions) > 1 else place
+            own = several and len(conditions) > 1
+            form = form_of_condition(index, DETAILED.of_swarm(opponent) if own else None)
+            axes.fill_between(column["n"], column["low"], column["high"], color=form.colour, alpha=0.2, lw=0)
+            draw_line(axes, column["n"], column["measured"], form, name)
+            if column["published"].notna().any():
+                published = Form(form.colour, ":", "x")
+                draw_line(axes, column["n"], column["published"], published, f"{name}, published")
+        axes.set_ylim(-3, 103)
+        axes.set_xticks(sorted(set(cells["n"])))
+        axes.set_xlabel("number of robots in all, N")
+        learned = set(cells["learned"])
+        what = "to attack" if learned == {"attack"} else "flight within" if len(learned) == 1 else "so"
+        axes.set_ylabel(f"robots that learned {what} (%)")
+        legend_below(figure, "learned, measured with its 95 % interval")
+    return figure
+
+
+# What a scenario shows, where it is not pucks. The swarm by which conditions differ, S2, is that of the SUD.
+_OF_SUD = (
+    *("fig-6.10a", "fig-6.10b", "fig-6.12", "fig-6.14"),
+    *("fig-7.4", "fig-7.6", "fig-7.8", "fig-7.10", "fig-7.11", "fig-7.19"),
+)
+_OF_TIME = ("fig-6.3",)
+
+
+def quantities(scenario: str) -> tuple[str, ...]:
+    """Return what the figure of a scenario shows: `TIME_SHARES`, ``sud`` (of S2) or ``pucks``."""
+    if scenario in _OF_SUD:
+        return ("sud",)
+    return TIME_SHARES if scenario in _OF_TIME else ("pucks",)
+
+
+def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", look: Look = DETAILED) -> Figure:
+    """Draw what the source shows of a scenario: pucks, SUD of S2 or shares of time over the number of robots.
+
+    Parameters
+    ----------
+    runs, scenario, title, look
+        As for `pucks_over_n`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        `runs` has no row of the scenario.
+    """
+    shown = {("sud",): sud_over_n, TIME_SHARES: time_shares}.get(quantities(scenario), pucks_over_n)
+    return shown(runs, scenario, title, look)
+
+
+def draw(results_dir: Path, scenario_ids: Sequence[str], titles: Mapping[str, str]) -> list[Path]:
+    """Write `figures/<id>.png` in a results directory for each of the scenarios that it has runs of.
+
+    Parameters
+    ----------
+    results_dir : Path
+        A directory that holds `runs.parquet`.
+    scenario_ids : sequence of str
+        Scenarios asked for; one without runs is left out.
+    titles : mapping of str to str
+        What each scenario is, printed after its id; an id may be absent.
+
+    Returns
+    -------
+    list of Path
+        The files written, in the order of `scenario_ids`. Each is written whole or not at all.
+
+    Raises
+    ------
+    InputError
+        The runs cannot be read or the figures cannot be written.
+    """
+    runs = read_runs(results_dir)
+    present = set(runs["scenario"])
+    paths = []
+    for scenario in scenario_ids:
+        if scenario not in present:
+            continue
+        path = results_dir / "figures" / f"{scenario}.png"
+        save(figure_of(runs, scenario, titles.get(scenario, "")), path)
+        paths.append(path)
+    return paths
+
+
+def of_scenario(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
+    """Return the rows of a scenario.
+
+    Raises
+    ------
+    InputError
+        `runs` has none.
+    """
+    rows = runs[runs["scenario"] == scenario]
+    if rows.empty:
+        raise InputError("scenario", scenario, f"must be one of {', '.join(sorted(set(runs['scenario'])))}")
+    return rows

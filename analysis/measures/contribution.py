@@ -1,0 +1,291 @@
+"""What robots contributed to their swarm, beside the rewards that they computed (docs/contribution.md).
+
+From the rows of `contribution.parquet`: a robot's contribution to a game is the SUD of its swarm less that of
+the same game without it. Rows of one question are compared: one scenario, condition, N and way to be absent.
+
+An interval of a mean is Student's over the seeds; that of a rank correlation or of a quotient is a bootstrap,
+which draws seeds, each with all its robots, again. One seed has no interval: NaN.
+"""
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy import stats
+
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.theory.swarms import swarm_utility_difference
+from kswarms.analysis.measures.utilities import COLUMNS, robot_utilities, swarm_utilities
+from kswarms.analysis.statistics.intervals import CONFIDENCE, student_reach
+
+Floats = NDArray[np.float64]
+Statistic = Callable[[Floats], Floats]
+"""Maps what belongs to the seeds, drawn again and again, to one number for each time."""
+
+FILE: Final = "contribution.parquet"
+FEWEST_ROBOTS: Final = 3
+"""Of which ranks are compared: two are in the same order or they are not."""
+
+_QUESTION: Final = ["scenario", "condition", "n", "absent_from"]
+_RESAMPLES: Final = 2000
+_BOOTSTRAP_SEED: Final = 0
+
+MEASURES: Final = {"pucks": "pucks", "time": "s"}
+"""The SUD whose change is a contribution, and its unit."""
+QUANTITIES: Final = (*MEASURES, "reward", "reward_rate")
+"""What is averaged of each robot: its contribution, its reward in a game (s), and that for each second."""
+OTHERS: Final = ("mates", "opponents")
+
+
+def time_sud(conflicts: Mapping[str, Sequence[Any]], swarms: int) -> list[float]:
+    """Return SUD in time-utility of each swarm of a game (Eq. 3.7 with 4.2 to 4.6, α = β = 1), in seconds.
+
+    Parameters
+    ----------
+    conflicts : mapping of str to sequence
+        The conflicts of one game, columns as in ``conflicts.parquet``; those of its learning do not count.
+    swarms : int
+        Number of swarms.
+    """
+    table = pd.DataFrame({name: conflicts[name] for name in COLUMNS})
+    table = table[table["phase"] == "game"]
+    utilities = [0.0] * swarms  # of a swarm that met nobody, too
+    if not table.empty:
+        of_swarms = swarm_utilities(robot_utilities(table))
+        for swarm, utility in zip(of_swarms["swarm"], of_swarms["utility"], strict=True):
+            utilities[swarm - 1] = utility
+    return [swarm_utility_difference(utilities, swarm) for swarm in range(swarms)]
+
+
+def read(directory: Path) -> pd.DataFrame:
+    """Read `contribution.parquet`, one row for each game and robot.
+
+    Parameters
+    ----------
+    directory : Path
+        The directory that `kswarms contribution --out` wrote.
+
+    Raises
+    ------
+    InputError
+        If there is no such table that can be read.
+    """
+    path = directory / FILE
+    try:
+        return pd.read_parquet(path)
+    except (OSError, ValueError) as error:
+        raise InputError("results", str(path), "must be a table that `kswarms contribution` wrote") from error
+
+
+def of_question(rows: pd.DataFrame, **question: object) -> pd.DataFrame:
+    """Return the rows of one question, with the contributions.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        Rows of `contribution.parquet`.
+    **question
+        Values of `scenario`, `condition`, `n`, `absent_from`, as far as `rows` has several.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Besides the columns of `rows`: `pucks` and `time` (s), the contribution to SUD; `reward_rate`, the
+        reward for each second of conflicts and of the program after them (Eq. 4.15), NaN without any.
+
+    Raises
+    ------
+    InputError
+        If none remain, or those of several questions.
+    """
+    for name, value in question.items():
+        if value not in set(rows[name]):
+            raise InputError(name, value, f"must be one of {', '.join(map(repr, sorted(set(rows[name]))))}")
+        rows = rows[rows[name] == value]
+    for name in _QUESTION:
+        values = sorted(set(rows[name]))
+        if len(values) != 1:
+            raise InputError(name, question.get(name), f"must be one of {', '.join(map(repr, values))}")
+    rows = rows.reset_index(drop=True)
+    return rows.assign(
+        pucks=(rows["sud"] - rows["sud_without"]).astype(float),
+        time=rows["time_sud"] - rows["time_sud_without"],
+        reward_rate=rows["reward"] / rows["reward_time"].where(rows["reward_time"] > 0),
+    )
+
+
+def measures_of(rows: pd.DataFrame) -> list[str]:
+    """Return those of `MEASURES` that were measured."""
+    return [measure for measure in MEASURES if rows[measure].notna().any()]
+
+
+def means(rows: pd.DataFrame) -> pd.DataFrame:
+    """Average over the seeds, for each robot and for each swarm.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        As `of_question` returns them.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row for each `swarm` and `robot`, and after them one for the mean robot of each swarm, with robot
+        −1; `seeds`, and for each of `QUANTITIES` its mean, under its own name, and the 95 % interval of that
+        mean, ``…_low`` and ``…_high``.
+    """
+    quantities = list(QUANTITIES)
+    mean_robot = rows.groupby(["swarm", "seed"])[quantities].mean().reset_index().assign(robot=-1)
+    groups = pd.concat([rows, mean_robot]).groupby(["swarm", "robot"])
+    table = groups.agg(seeds=("seed", "nunique"))
+    for quantity in quantities:
+        values = groups[quantity]
+        mean = table[quantity] = values.mean()
+        reach = student_reach(values.sem(), values.count())
+        table[f"{quantity}_low"], table[f"{quantity}_high"] = mean - reach, mean + reach
+    table = table.reset_index()
+    return table.sort_values(["swarm", "robot"], key=lambda column: column.where(column >= 0, np.inf))
+
+
+def rank_correlations(rows: pd.DataFrame) -> pd.DataFrame:
+    """Compare the order of robots by reward with that by contribution, within each swarm.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        As `of_question` returns them.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row for each `swarm` of three robots at least and each `measure`, with Spearman's ρ and its 95 %
+        interval:
+
+        * ``robots``, ``…_low``, ``…_high``: of the robots' means over the seeds; bootstrap over seeds;
+        * ``games``, ``…_low``, ``…_high``: of the robots in one game, averaged over the games; Student's t,
+          cut at ±1.
+
+        NaN where all robots have the same.
+    """
+    table = []
+    for swarm, of_swarm in rows.groupby("swarm"):
+        reward = _by_seed(of_swarm, "reward")
+        for measure in measures_of(rows) if reward.shape[1] >= FEWEST_ROBOTS else ():
+            contribution = _by_seed(of_swarm, measure)
+            both = np.stack([reward, contribution], axis=-1)
+            in_games = rank_correlation(reward, contribution)
+            of_games = np.clip(_student(in_games[~np.isnan(in_games)]), -1.0, 1.0)
+            of_means = (float(_of_means(both)), *_bootstrap(both, _of_means))
+            table.append((swarm, measure, *of_means, *of_games))
+    columns = ("robots", "robots_low", "robots_high", "games", "games_low", "games_high")
+    return pd.DataFrame(table, columns=["swarm", "measure", *columns])
+
+
+def _of_means(games: Floats) -> Floats:
+    """Return ρ of the means over the seeds of two quantities, shape (…, seeds, robots, 2)."""
+    mean = games.mean(axis=-3)
+    return rank_correlation(mean[..., 0], mean[..., 1])
+
+
+def rank_correlation(first: Floats, second: Floats) -> Floats:
+    """Return Spearman's ρ along the last axis, NaN where one of both is constant.
+
+    Parameters
+    ----------
+    first, second : ndarray of float64, shape (…, robots)
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", stats.ConstantInputWarning)
+        ranks = (stats.rankdata(values, axis=-1) for values in (first, second))
+        correlation: Floats = np.asarray(stats.pearsonr(*ranks, axis=-1).statistic)
+    return correlation
+
+
+def assumption(rows: pd.DataFrame) -> pd.DataFrame:
+    """Say what became of the time that others spent in conflicts with a robot once it was gone.
+
+    The source assumes all of it to be program time (Eqs. 4.9 to 4.11). Times without the robot are scaled to
+    the duration of the game with it, which is the same unless a number of pucks ends the game.
+
+    Parameters
+    ----------
+    rows : pandas.DataFrame
+        As `of_question` returns them.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row for each `swarm` of the robot and each of `OTHERS` that there are, `others`; seconds in a
+        game, summed over these others, averaged over robots and seeds:
+
+        * `t_a`, `t_a_without`, `t_p`, `t_p_without`: T(a) and T(p) with the robot and without it;
+        * `met`: T(a) in the others' conflicts with the robot;
+        * `share`, `share_low`, `share_high`: (T(a) − T(a) without) / met, which is 1 if the assumption holds
+          and 0 if other conflicts take the place of those, and its 95 % interval; NaN if nobody met it.
+    """
+    scale = rows["duration"] / rows["duration_without"]
+    table = []
+    for swarm, of_swarm in rows.groupby("swarm"):
+        for others in OTHERS:
+            times = pd.DataFrame(
+                {
+                    "t_a": of_swarm[f"{others}_t_a"],
+                    "t_a_without": of_swarm[f"{others}_t_a_without"] * scale,
+                    "t_p": of_swarm[f"{others}_t_p"],
+                    "t_p_without": of_swarm[f"{others}_t_p_without"] * scale,
+                    "met": of_swarm[f"{others}_t_a_met"],
+                }
+            )
+            if (times["t_a"] + times["t_p"] == 0).all():
+                continue  # nobody there
+            of_seeds = times.groupby(of_swarm["seed"]).mean().to_numpy()
+            low, high = _bootstrap(of_seeds, _share)
+            found: dict[str, Any] = {"swarm": swarm, "others": others, **times.mean()}
+            table.append(found | {"share": float(_share(of_seeds)), "share_low": low, "share_high": high})
+    return pd.DataFrame(table)
+
+
+def _share(tables: Floats) -> Floats:
+    """Return the quotient of `assumption` for tables of shape (…, seeds, 5), in the order of its columns."""
+    t_a, t_a_without, met = (tables[..., column].mean(axis=-1) for column in (0, 1, 4))
+    share: Floats = np.divide(t_a - t_a_without, met, out=np.full_like(met, np.nan), where=met > 0)
+    return share
+
+
+def _by_seed(rows: pd.DataFrame, quantity: str) -> Floats:
+    """Return a quantity as an array of shape (seeds, robots)."""
+    table: Floats = rows.pivot(index="seed", columns="robot", values=quantity).to_numpy()
+    return table
+
+
+def _student(values: Floats) -> tuple[float, float, float]:
+    """Return the mean of values and the 95 % interval of it, NaN where it takes more of them."""
+    if len(values) < 2:
+        return (float(values.mean()) if len(values) else np.nan), np.nan, np.nan
+    mean = float(values.mean())
+    reach = float(student_reach(stats.sem(values), len(values)))
+    return mean, mean - reach, mean + reach
+
+
+def _bootstrap(table: Floats, statistic: Statistic) -> tuple[float, float]:
+    """Return the 95 % interval of a statistic of a table over the seeds, its first axis."""
+    seeds = len(table)
+    if seeds < 2:
+        return np.nan, np.nan
+    with warnings.catch_warnings():
+        # Of a statistic that has no value in some resample: NaN says it all.
+        warnings.simplefilter("ignore", stats.DegenerateDataWarning)
+        resampled = stats.bootstrap(
+            (np.arange(seeds),),
+            lambda drawn, axis: statistic(table[drawn]),  # `axis`: SciPy's call, always the last
+            n_resamples=_RESAMPLES,
+            confidence_level=CONFIDENCE,
+            method="percentile",
+            rng=np.random.default_rng(_BOOTSTRAP_SEED),
+        )
+    low, high = resampled.confidence_interval
+    return float(low), float(high)

@@ -1,0 +1,1 @@
+"""Reading results, recorded tables and published numbers."""

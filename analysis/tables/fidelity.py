@@ -1,0 +1,166 @@
+"""The scenarios `argos-*` beside the same games in ARGoS 3: pucks, time in conflict, and whether they agree.
+
+A mean score agrees within 20 %, or within 1.5 pucks, or when the 95 % Welch interval of the difference holds
+0; a mean share of time in conflict, T(a) / (T(a) + T(p)), agrees within 0.06.
+"""
+
+import pandas as pd
+from scipy import stats
+
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.results.published import argos_fixed_policies
+from kswarms.analysis.statistics.intervals import CONFIDENCE
+from kswarms.analysis.text_tables import NONE, PrintedTable, with_interval
+
+SHARE_TOLERANCE = 0.06
+SCORE_TOLERANCE = 0.2
+PUCK_TOLERANCE = 1.5
+
+_ROW = ["scenario", "n", "swarm"]
+# Means of counts over 10 and 20 seeds fall on the tolerances exactly: rounding must not decide.
+_ROUNDING = 1e-9
+
+
+def against_argos(runs: pd.DataFrame) -> pd.DataFrame:
+    """Compare runs with the ARGoS games of the same policies and density.
+
+    Parameters
+    ----------
+    runs : pandas.DataFrame
+        Rows of `runs.parquet`; other scenarios, and densities that ARGoS was not run at, are left out.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row for each `scenario` (str), `n`, `swarm` (int64) that both have, sorted by these, with
+
+        * `seeds_ours`, `seeds_theirs` (int64): games;
+        * `score_ours`, `score_theirs`, `score_difference` (float64, pucks): means, and ours - theirs;
+        * `score_low`, `score_high` (float64, pucks): the 95 % Welch interval of the difference, NaN where
+          one of the two has a single game;
+        * `score_relative` (float64): difference / theirs, NaN where theirs is 0;
+        * `share_ours`, `share_theirs`, `share_difference` (float64): mean shares of time in conflict;
+        * `score_fits`, `share_fits` (bool): whether they agree by the rule above.
+
+    Raises
+    ------
+    InputError
+        No run can be compared.
+    """
+    theirs = _summary(_argos_games())
+    both = _summary(_own_games(runs)).merge(
+        theirs, left_index=True, right_index=True, suffixes=("_ours", "_theirs")
+    )
+    both = both.sort_index()
+    if both.empty:
+        known = theirs.index
+        allowed = ", ".join(sorted(set(known.get_level_values("scenario"))))
+        densities = ", ".join(str(n) for n in sorted(set(known.get_level_values("n"))))
+        raise InputError(
+            "scenarios", sorted(set(runs["scenario"])), f"must include {allowed} at one of N = {densities}"
+        )
+    difference = both["score_ours"] - both["score_theirs"]
+    reach = _reach(both)
+    share_difference = both["share_ours"] - both["share_theirs"]
+    return pd.DataFrame(
+        {
+            "seeds_ours": both["seeds_ours"],
+            "seeds_theirs": both["seeds_theirs"],
+            "score_ours": both["score_ours"],
+            "score_theirs": both["score_theirs"],
+            "score_difference": difference,
+            "score_low": difference - reach,
+            "score_high": difference + reach,
+            "score_relative": (difference / both["score_theirs"]).where(both["score_theirs"] > 0),
+            "score_fits": (
+                (difference.abs() <= SCORE_TOLERANCE * both["score_theirs"] + _ROUNDING)
+                | (difference.abs() <= PUCK_TOLERANCE + _ROUNDING)
+                | (difference.abs() <= reach)
+            ),
+            "share_ours": both["share_ours"],
+            "share_theirs": both["share_theirs"],
+            "share_difference": share_difference,
+            "share_fits": share_difference.abs() <= SHARE_TOLERANCE + _ROUNDING,
+        }
+    ).reset_index()
+
+
+def printed(frame: pd.DataFrame) -> PrintedTable:
+    """Print what `against_argos` returns, a line for each row."""
+    header = [
+        *("scenario", "N", "swarm", "pucks", "ARGoS", "difference (95 % interval)", "relative", "fits"),
+        *("time in conflict", "ARGoS", "difference", "fits"),
+    ]
+    rows = []
+    for row in frame.to_dict("records"):
+        relative = NONE if pd.isna(row["score_relative"]) else f"{100 * row['score_relative']:+.0f} %"
+        difference = with_interval(row["score_difference"], row["score_low"], row["score_high"], "+.1f")
+        rows.append(
+            [
+                str(row["scenario"]),
+                str(row["n"]),
+                f"S{row['swarm']}",
+                f"{row['score_ours']:.1f}",
+                f"{row['score_theirs']:.1f}",
+                difference,
+                relative,
+                _verdict(row["score_fits"]),
+                f"{row['share_ours']:.3f}",
+                f"{row['share_theirs']:.3f}",
+                f"{row['share_difference']:+.3f}",
+                _verdict(row["share_fits"]),
+            ]
+        )
+    return PrintedTable(header, rows, "")
+
+
+def markdown_table(frame: pd.DataFrame) -> str:
+    """Write what `against_argos` returns as a Markdown table, a line for each row; misfits are bold."""
+    return printed(frame).to_markdown().replace("| no |", "| **no** |")
+
+
+def _verdict(fits: bool) -> str:
+    return "yes" if fits else "no"
+
+
+def _own_games(runs: pd.DataFrame) -> pd.DataFrame:
+    in_conflict = runs["t_a_intra"] + runs["t_a_inter"]
+    return runs[_ROW].assign(score=runs["pucks"], share=in_conflict / (in_conflict + runs["t_p"]))
+
+
+def _argos_games() -> pd.DataFrame:
+    """Bring the ARGoS games into the form of ours: one row for each game and swarm."""
+    games = argos_fixed_policies()
+    swarms = []
+    for swarm in (1, 2):
+        in_conflict = games[f"ta_intra{swarm}"] + games[f"ta_inter{swarm}"]
+        swarms.append(
+            pd.DataFrame(
+                {
+                    "scenario": "argos-" + games["s1_policy"] + "-" + games["s2_policy"],
+                    "n": games["n"],
+                    "swarm": swarm,
+                    "score": games[f"score{swarm}"],
+                    "share": in_conflict / (in_conflict + games[f"tp{swarm}"]),
+                }
+            )
+        )
+    return pd.concat(swarms)
+
+
+def _summary(games: pd.DataFrame) -> pd.DataFrame:
+    return games.groupby(_ROW).agg(
+        seeds=("score", "size"), score=("score", "mean"), variance=("score", "var"), share=("share", "mean")
+    )
+
+
+def _reach(both: pd.DataFrame) -> pd.Series:
+    """Half the width of Welch's interval of a difference of means, from variances and numbers of games."""
+    ours = both["variance_ours"] / both["seeds_ours"]
+    theirs = both["variance_theirs"] / both["seeds_theirs"]
+    freedom = (ours + theirs) ** 2 / (
+        ours**2 / (both["seeds_ours"] - 1) + theirs**2 / (both["seeds_theirs"] - 1)
+    )
+    quantile = stats.t.ppf(0.5 + CONFIDENCE / 2, freedom.to_numpy())
+    # Scores that never vary leave no freedom: the interval is the difference itself.
+    return (quantile * (ours + theirs) ** 0.5).mask(ours + theirs == 0, 0.0)

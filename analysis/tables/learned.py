@@ -1,0 +1,148 @@
+"""Tables of what swarms learned, from the rows of `policies.parquet`, beside the published numbers.
+
+A cell is the percentage of a swarm's robots that learned to attack another swarm, or to flee within their
+own: the mean over the seeds, with the 95 % interval of that mean by Student's t (`scipy.stats`), cut at 0
+and 100 %. A single seed has no interval.
+"""
+
+from collections.abc import Sequence
+
+import pandas as pd
+
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.results.published import learned_percentages
+from kswarms.analysis.statistics.intervals import student_reach
+from kswarms.analysis.text_tables import PrintedTable, number, span, with_interval
+
+_COLUMN = ["scenario", "condition", "swarm", "opponent"]
+_CELL = [*_COLUMN, "n"]
+
+
+def learned(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataFrame:
+    """Say how many robots learned to attack others and to flee within, for each curve and density.
+
+    Parameters
+    ----------
+    policies : pandas.DataFrame
+        Rows of `policies.parquet`, as `kswarms.analysis.results.runs.read_policies` returns them.
+    scenarios : sequence of str
+        Ids of the scenarios wanted.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row for each `scenario`, `condition` (str), `swarm`, `opponent`, `n` (int64), in the order of
+        `scenarios`, then sorted, with
+
+        * `learned` (str): ``attack``, of another swarm, or ``flight within``, of the own;
+        * `seeds` (int64): games;
+        * `measured` (float64, %): mean over the seeds;
+        * `low`, `high` (float64, %): the 95 % interval of that mean, NaN for a single seed;
+        * `published` (float64, %): the source's number, NaN where it gives none;
+        * `error` (float64, percentage points): measured − published.
+
+    Raises
+    ------
+    InputError
+        No swarm of these scenarios learned.
+    """
+    rows = policies[policies["scenario"].isin(scenarios)]
+    if rows.empty:
+        known = ", ".join(sorted(set(policies["scenario"])))
+        raise InputError("scenarios", list(scenarios), f"must include one with learners: {known}")
+    # The share of attack stands on the row of each action.
+    rows = rows.drop_duplicates([*_CELL, "seed"])
+    within = rows["opponent"] == rows["swarm"]
+    rows = rows.assign(
+        learned=within.map({True: "flight within", False: "attack"}),
+        percent=100 * rows["attack_share"].where(~within, 1 - rows["attack_share"]),
+    )
+    cells = (
+        rows.groupby([*_CELL, "learned"])["percent"]
+        .agg(seeds="size", measured="mean", deviation="sem")
+        .reset_index()
+        .merge(learned_percentages(), how="left", on=["scenario", "learned", "n"])
+    )
+    reach = student_reach(cells["deviation"].to_numpy(), cells["seeds"].to_numpy())
+    cells = cells.assign(
+        low=(cells["measured"] - reach).clip(lower=0),
+        high=(cells["measured"] + reach).clip(upper=100),
+        error=cells["measured"] - cells["published"],
+    )
+    order = {scenario: index for index, scenario in enumerate(scenarios)}
+    cells = cells.sort_values(
+        _CELL, key=lambda values: values.map(order) if values.name == "scenario" else values
+    ).reset_index(drop=True)
+    return cells[[*_CELL, "learned", "seeds", "measured", "low", "high", "published", "error"]]
+
+
+def mean_absolute_error(cells: pd.DataFrame) -> float:
+    """Return the mean of |measured − published| over the cells that have both, NaN if none has.
+
+    Parameters
+    ----------
+    cells : pandas.DataFrame
+        As `learned` returns them.
+    """
+    return float(cells["error"].abs().mean())
+
+
+def printed(cells: pd.DataFrame) -> PrintedTable:
+    """Put cells into the form of the source's tables: a row for each N, a column for each curve.
+
+    Parameters
+    ----------
+    cells : pandas.DataFrame
+        As `learned` returns them.
+
+    Returns
+    -------
+    PrintedTable
+        Published and measured percentages side by side, measured alone where nothing was published; the
+        caption gives the mean absolute errors. Columns are named by scenario, condition and what was
+        learned, as far as these differ: in the source's tables one swarm learns, about one other.
+    """
+    densities = sorted(set(cells["n"]))
+    header, columns, errors = ["N"], [[str(n) for n in densities]], []
+    for name, column in named_columns(cells):
+        by_density = column.set_index("n").reindex(densities)
+        if column["published"].notna().any():
+            header.append(f"{name}\npublished")
+            columns.append([number(value, ".1f") for value in by_density["published"]])
+            errors.append(f"{name} {mean_absolute_error(column):.1f}")
+        header.append(f"{name}\nmeasured")
+        measured = zip(by_density["measured"], by_density["low"], by_density["high"], strict=True)
+        columns.append([with_interval(*cell, ".1f") for cell in measured])
+    return PrintedTable(header, [list(row) for row in zip(*columns, strict=True)], _caption(cells, errors))
+
+
+def named_columns(cells: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    """Return the columns of a table, each under what tells it from the others.
+
+    Parameters
+    ----------
+    cells : pandas.DataFrame
+        As `learned` returns them.
+    """
+    telling = [part for part in ("scenario", "condition", "learned") if cells[part].nunique() > 1]
+    opponents = cells.groupby(["scenario", "condition", "swarm", "learned"])["opponent"].nunique()
+    columns = []
+    for _, column in cells.groupby(_COLUMN, sort=False):
+        first = column.iloc[0]
+        words = [str(first[part]) for part in telling or ["learned"]]
+        if opponents.max() > 1:  # of three swarms
+            words.append(f"S{first['opponent']}")
+        columns.append((", ".join(words), column))
+    return columns
+
+
+def _caption(cells: pd.DataFrame, errors: Sequence[str]) -> str:
+    few, many = cells["seeds"].min(), cells["seeds"].max()
+    seeds = f"mean of {span(few, many)} seeds (95 % interval, Student's t)"
+    caption = f"percent of the learning swarm's robots; {seeds if many > 1 else 'one seed'}"
+    compared = cells["error"].notna().sum()
+    if compared:
+        caption += f"\nmean absolute error, percentage points: {', '.join(errors)}"
+    if len(errors) > 1:
+        caption += f", all {compared} cells {mean_absolute_error(cells):.1f}"
+    return caption

@@ -1,0 +1,63 @@
+"""The numbers of a scenario's figure as a table: means over the seeds and intervals, a row for each N."""
+
+import pandas as pd
+
+from kswarms.analysis.figures.over_n import TIME_SHARES, of_scenario, quantities, with_time_shares
+from kswarms.analysis.figures.style import curves_of
+from kswarms.analysis.statistics.means import summary
+from kswarms.analysis.text_tables import PrintedTable, span, with_interval
+
+_UNITS = {"pucks": "pucks deposited by the swarm", "sud": "SUD of S2 (pucks)"}
+
+
+def scores(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
+    """Return the numbers behind the figure of a scenario (`kswarms.analysis.figures.over_n.figure_of`).
+
+    Parameters
+    ----------
+    runs : pandas.DataFrame
+        Rows of `runs.parquet`.
+    scenario : str
+        Id of the scenario.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row for each `quantity` (str: ``pucks``, ``sud`` or a kind of time share), `curve` (str: its name
+        in the figure's legend) and `n` (int64), with `seeds` (int64), `mean`, `low`, `high` (float64): mean
+        over the seeds and its 95 % bootstrap interval, NaN where there is one seed.
+
+    Raises
+    ------
+    InputError
+        `runs` has no row of the scenario.
+    """
+    rows = of_scenario(runs, scenario)
+    shown = quantities(scenario)
+    if shown == ("sud",):
+        rows = rows[rows["swarm"] == 2]
+    elif shown == TIME_SHARES:
+        rows = with_time_shares(rows)
+    parts = [
+        summary(curve.rows, quantity, by=()).assign(quantity=quantity, curve=curve.label)
+        for quantity in shown
+        for curve in curves_of(rows)
+    ]
+    return pd.concat(parts, ignore_index=True)[["quantity", "curve", "n", "seeds", "mean", "low", "high"]]
+
+
+def printed(frame: pd.DataFrame) -> PrintedTable:
+    """Print what `scores` returns: a row for each N, a column for each curve and quantity."""
+    densities = sorted(set(frame["n"]))
+    several = frame["quantity"].nunique() > 1
+    header, columns = ["N"], [[str(n) for n in densities]]
+    for (quantity, curve), column in frame.groupby(["quantity", "curve"], sort=False):
+        header.append(f"{curve}\n{quantity}" if several else str(curve))
+        by_density = column.set_index("n").reindex(densities)
+        form = ".1f" if quantity in _UNITS else ".3f"
+        cells = zip(by_density["mean"], by_density["low"], by_density["high"], strict=True)
+        columns.append([with_interval(*cell, form) for cell in cells])
+    unit = "share of time in conflict" if several else _UNITS[frame["quantity"].iloc[0]]
+    few, many = frame["seeds"].min(), frame["seeds"].max()
+    seeds = f"mean of {span(few, many)} seeds (95 % bootstrap interval)" if many > 1 else "one seed"
+    return PrintedTable(header, [list(row) for row in zip(*columns, strict=True)], f"{unit}; {seeds}")

@@ -1,0 +1,1 @@
+"""One game as data: swarms, arena, free parameters."""

@@ -1,0 +1,1 @@
+"""The compiled kernel: contacts, sensing and motion of all bodies in one control period."""

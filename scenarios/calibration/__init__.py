@@ -1,0 +1,1 @@
+"""Calibration: the free parameters fitted to Table 6.1."""

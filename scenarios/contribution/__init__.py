@@ -1,0 +1,1 @@
+"""Contributions: the same games played without single robots."""

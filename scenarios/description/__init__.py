@@ -1,0 +1,1 @@
+"""A scenario as data, and its TOML file."""

@@ -1,0 +1,1 @@
+"""Runs: one game with one seed, and how many of them are played."""

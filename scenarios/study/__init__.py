@@ -1,0 +1,1 @@
+"""A study: a directory of results that resumes, its ledger and its tables."""

@@ -1,0 +1,1 @@
+"""Watching a game: playing it stepwise, looking into a robot, telling its conflicts."""

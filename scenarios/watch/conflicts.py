@@ -1,0 +1,218 @@
+"""Replay: the conflicts of a run, told one by one.
+
+A run is a game and a seed, and a game with a seed has one course only, so nothing has to be recorded to see
+it again: it is played again.
+"""
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from kswarms.agents.learning.bandit import Bandit
+from kswarms.agents.learning.selection_rules import FORGOTTEN, UCB
+from kswarms.agents.policies.learner import Learner
+from kswarms.scenarios.runs.run import Run
+from kswarms.scenarios.runs.sweep import name_of, naming
+
+if TYPE_CHECKING:
+    from kswarms.model.game_model import GameModel
+
+
+class Arm(NamedTuple):
+    """What a robot knows of an action against a swarm.
+
+    Attributes
+    ----------
+    action : str
+        Name of the action.
+    n : float
+        N(a), discounted where the rule discounts.
+    q : float
+        Q(a) (Eq. 4.15), NaN if it was never tried.
+    bound : float
+        Q(a) and what UCB adds for exploration (Eq. 4.16); NaN if the rule is none of UCB's, or an arm of the
+        bandit was never tried.
+    """
+
+    action: str
+    n: float
+    q: float
+    bound: float
+
+
+class ConflictAccount(NamedTuple):
+    """A conflict: who, where, what was known, what was chosen, what it earned.
+
+    Attributes
+    ----------
+    phase : {'learning', 'game'}
+        Whether learners still learned.
+    robot, swarm : int
+        Whose conflict it is: number of the robot from 0, its swarm from 1.
+    opponent, opponent_swarm : int
+        Whom it met.
+    start : float
+        When (s since the beginning, that of learning included).
+    x, y : float
+        Where (m).
+    known : tuple of Arm
+        What the robot knew then of its actions against that swarm; empty if it learns nothing of it.
+    action : str
+        What it chose.
+    t_a, t_p : float
+        T(a) and T(p) (s).
+    active : int
+        Sensors that were active, n'_i.
+    seen : tuple of tuple of int
+        For each swarm, the robots that they read.
+    reward, q : float
+        R (s) and Q of the action after it; NaN where nothing was learned.
+    """
+
+    phase: str
+    robot: int
+    swarm: int
+    opponent: int
+    opponent_swarm: int
+    start: float
+    x: float
+    y: float
+    known: tuple[Arm, ...]
+    action: str
+    t_a: float
+    t_p: float
+    active: int
+    seen: tuple[tuple[int, ...], ...]
+    reward: float
+    q: float
+
+
+def arms_known(learner: Learner, bandit: Bandit) -> tuple[Arm, ...]:
+    """Return what a bandit of a learner knows of each action."""
+    rule = learner.rule
+    bounds = [math.nan] * len(bandit.count)
+    if isinstance(rule, UCB) and min(bandit.count) >= FORGOTTEN:
+        bounds = rule.bounds(bandit)
+    return tuple(
+        Arm(action.name, bandit.count[arm], bandit.value(arm), bounds[arm])
+        for arm, action in enumerate(learner.actions)
+    )
+
+
+class Accounts:
+    """The conflicts of a game as they are recorded, each with what was known when it began.
+
+    A robot closes its last conflict, learns from it, and only then chooses; so what it knew is what the
+    rewards recorded before amount to.
+
+    Parameters
+    ----------
+    model : GameModel
+        A game that records conflicts.
+    """
+
+    def __init__(self, model: "GameModel") -> None:
+        self._table = model.datacollector.tables["conflicts"]
+        self._learners = {
+            robot.number: robot.policy for robot in model.robots if isinstance(robot.policy, Learner)
+        }
+        self._bandits = {
+            (number, opponent): Bandit(len(learner.actions))
+            for number, learner in self._learners.items()
+            for opponent in learner.bandits
+        }
+
+    def take(self) -> Iterator[ConflictAccount]:
+        """Take the conflicts out of the recorded table and yield them, in the order in which they closed."""
+        names = list(self._table)
+        columns = [self._table[name].copy() for name in names]
+        for column in self._table.values():
+            column.clear()  # a long game would fill the memory
+        for values in zip(*columns, strict=True):
+            yield self._account(dict(zip(names, values, strict=True)))
+
+    def _account(self, row: dict[str, Any]) -> ConflictAccount:
+        robot = row["robot"]
+        bandit = self._bandits.get((robot, row["opponent_swarm"] - 1))
+        known: tuple[Arm, ...] = ()
+        if bandit is not None:
+            learner = self._learners[robot]
+            known = arms_known(learner, bandit)
+            if not math.isnan(row["reward"]):
+                arm = [action.name for action in learner.actions].index(row["action"])
+                bandit.update(arm, row["reward"], row["t_a"] + row["t_p"], learner.rule.factor)
+        return ConflictAccount(known=known, **row)
+
+
+def conflicts_of(run: Run) -> list[ConflictAccount]:
+    """Play a run again and return its conflicts, those of learning included, by their start.
+
+    Parameters
+    ----------
+    run : Run
+        What is played.
+
+    Raises
+    ------
+    RunError
+        If the game fails.
+    """
+    from kswarms.model.game_model import GameModel
+
+    model = None
+    try:
+        with naming(name_of(run)):
+            model = GameModel(run.game, seed=run.seed, record="conflicts")
+            model.play()
+        return sorted(Accounts(model).take(), key=lambda account: (account.start, account.robot))
+    finally:
+        if model is not None:
+            model.forget()
+
+
+TOLD: Final = (
+    "t (s)",
+    "who",
+    "met",
+    "where (m)",
+    "known: Q (N)",
+    "chose",
+    "T(a)",
+    "T(p)",
+    "n′",
+    "saw",
+    "R",
+    "Q after",
+)
+"""Headings of what `told` returns; times in seconds."""
+
+
+def told(account: ConflictAccount, begin: float) -> list[str]:
+    """Return a conflict as the cells of a table.
+
+    Parameters
+    ----------
+    account : ConflictAccount
+        The conflict.
+    begin : float
+        When the measured game began, from which its time is counted (s).
+    """
+    return [
+        f"{account.start - begin:.1f}",
+        f"{account.robot} of S{account.swarm}",
+        f"{account.opponent} of S{account.opponent_swarm}",
+        f"{account.x:z.2f}, {account.y:z.2f}",  # z: no −0.00
+        ", ".join(f"{arm.action} {number(arm.q)} ({arm.n:.4g})" for arm in account.known) or "–",
+        account.action,
+        f"{account.t_a:.1f}",
+        f"{account.t_p:.1f}",
+        str(account.active),
+        ", ".join(f"{len(own)} of S{k}" for k, own in enumerate(account.seen, 1) if own),
+        number(account.reward),
+        number(account.q),
+    ]
+
+
+def number(value: float) -> str:
+    """Return a number with three decimals, a dash for none."""
+    return "–" if math.isnan(value) else f"{value:z.3f}"

@@ -1,0 +1,102 @@
+"""Rows of result tables made up for tests."""
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import pandas as pd
+
+DENSITIES = (6, 16, 26)
+
+
+def runs_of(
+    scenario: str,
+    swarms: Iterable[int] = (1, 2),
+    conditions: Iterable[str] = ("",),
+    densities: Iterable[int] = DENSITIES,
+    seeds: int = 4,
+) -> pd.DataFrame:
+    """Make runs whose swarm k deposits 10 k + n + 100 (index of the condition) pucks, ± 1 by the seed."""
+    return pd.DataFrame(
+        {
+            "run": f"{condition}-{n}-{seed}",
+            "scenario": scenario,
+            "condition": condition,
+            "n": n,
+            "seed": seed,
+            "swarm": swarm,
+            "size": n // 2,
+            "policy": ("avoid", "attack", "aggressive")[swarm - 1],
+            "pucks": 100 * index + 10 * swarm + n + (-1) ** seed,
+            "sud": 100 * index - 10 * swarm + n,
+            "t_a_intra": 10.0 * swarm,
+            "t_a_inter": 20.0 * swarm,
+            "t_p": 400.0 - 30.0 * swarm,
+            "conflicts_intra": 5,
+            "conflicts_inter": 6,
+            "duration": 600.0,
+            "ended": "time",
+        }
+        for index, condition in enumerate(conditions)
+        for n in densities
+        for seed in range(seeds)
+        for swarm in swarms
+    )
+
+
+SWARM = {0: 1, 1: 1, 2: 2, 3: 2, 4: 1, 5: 2}
+
+
+def conflict(robot: int, opponent: int, start: float, t_a: float = 2.0, **rest: Any) -> dict[str, Any]:
+    return {
+        "run": "a",
+        "phase": "game",
+        "robot": robot,
+        "swarm": SWARM[robot],
+        "opponent": opponent,
+        "opponent_swarm": SWARM[opponent],
+        "start": start,
+        "x": 0.0,
+        "y": 0.0,
+        "action": "flight",
+        "t_a": t_a,
+        "t_p": 1.0,
+        "active": 3,
+        "reward": math.nan,
+        "q": math.nan,
+        **rest,
+    }
+
+
+MET = pd.DataFrame(
+    [
+        conflict(0, 2, 0.0, 2.0),
+        conflict(2, 0, 1.0, 3.0),
+        conflict(0, 1, 3.0, 1.0),
+        conflict(2, 3, 8.0, 2.0),
+    ]
+)
+
+
+def robots(runs: tuple[str, ...] = ("a",)) -> pd.DataFrame:
+    def arms(fight: float | None, flight: float) -> list[dict[str, Any]]:
+        return [
+            {"opponent": 1, "action": "flight", "reward": 1.0, "time": 1.0, "count": 1.0, "q": flight},
+            {"opponent": 1, "action": "fight", "reward": 1.0, "time": 1.0, "count": 1.0, "q": fight},
+        ]
+
+    told = [(0, 1, []), (2, 2, arms(0.2, 0.1)), (3, 2, arms(None, 0.3))]
+    return pd.DataFrame(
+        {
+            "run": run,
+            "robot": robot,
+            "swarm": swarm,
+            "policy": "p",
+            "pucks": 0,
+            "t_a": 0.0,
+            "t_p": 0.0,
+            "arms": arms,
+        }
+        for run in runs
+        for robot, swarm, arms in told
+    )

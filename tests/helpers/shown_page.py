@@ -1,0 +1,105 @@
+"""The page of `kswarms explore`, rendered without a browser: its widgets are found and used as a user would.
+
+Needs the extra `explore`: whoever imports it has looked for solara before.
+"""
+
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import ipyvuetify
+import pytest
+import solara
+
+from kswarms.scenarios.explore import page
+from kswarms.scenarios.explore.session import Session
+from kswarms.scenarios.runs.run import Run
+
+
+@solara.component
+def _App() -> None:  # noqa: N802  # a component
+    page.Layout(children=[page.Page()])
+
+
+class Shown:
+    """The rendered page, with ways to find and use its widgets."""
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self.box, self.context = solara.render(_App(), handle_error=False)
+
+    def widgets(self) -> list[Any]:
+        """Return all widgets, outer ones first."""
+        found, rest = [], [self.box]
+        while rest:
+            widget = rest.pop(0)
+            if not isinstance(widget, str):
+                found.append(widget)
+                slots = [slot["children"] for slot in getattr(widget, "v_slots", None) or []]
+                inner = [*(getattr(widget, "children", None) or []), *slots]
+                rest = [each for one in inner for each in (one if isinstance(one, list) else [one])] + rest
+        return found
+
+    def text_of(self, widget: Any) -> str:
+        inner = getattr(widget, "children", None) or []
+        label = getattr(widget, "label", "")
+        return " ".join(each.strip() for each in (label, *inner) if isinstance(each, str) and each)
+
+    def texts(self) -> str:
+        """Return all text on the page, but that which Vue components have."""
+        return " | ".join(filter(None, map(self.text_of, self.widgets())))
+
+    def find(self, kind: type[Any], text: str) -> Any:
+        """Return the first widget of a kind whose text begins so."""
+        return next(w for w in self.widgets() if isinstance(w, kind) and self.text_of(w).startswith(text))
+
+    def click(self, text: str) -> None:
+        self.find(ipyvuetify.Btn, text).fire_event("click", {})
+
+    def write(self, text: str, value: object) -> None:
+        """Write into a field, and leave it."""
+        field = self.find(ipyvuetify.TextField, text)
+        field.v_model = str(value)
+        if field._event_handlers_map:  # else it takes each letter at once
+            field.fire_event("focusout", {})
+
+    def open(self, tab: int) -> None:
+        next(w for w in self.widgets() if isinstance(w, ipyvuetify.Tabs)).v_model = tab
+
+    def tables(self) -> list[Any]:
+        return [widget for widget in self.widgets() if hasattr(widget, "rows")]
+
+    def arena(self) -> Any:
+        return next(widget for widget in self.widgets() if hasattr(widget, "scene"))
+
+
+def showing(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str | Run], Shown]]:
+    """Yield what shows a page; close all pages shown afterwards."""
+    shown: list[Shown] = []
+    monkeypatch.setattr(page, "_GIVE_UP", 0.02)  # there is no browser that would draw
+
+    def render(start: str | Run) -> Shown:
+        session = Session(start)
+        monkeypatch.setattr(page, "Session", lambda _: session)
+        shown.append(Shown(session))
+        return shown[-1]
+
+    yield render
+    for each in shown:
+        each.context.close()
+
+
+def wait(for_this: Callable[[], bool]) -> None:
+    """Wait for what the thread of a page does."""
+    patience = time.monotonic() + 10.0
+    while not for_this():
+        assert time.monotonic() < patience
+        time.sleep(0.01)
+
+
+def unfold(shown: Shown, heading: str) -> None:
+    """Open a part of the controls that is folded."""
+    panels = [w for w in shown.widgets() if isinstance(w, ipyvuetify.ExpansionPanels)]
+    for panel in panels:
+        panel.v_model = 0
+    assert heading in shown.texts()

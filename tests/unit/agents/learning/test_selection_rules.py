@@ -1,0 +1,243 @@
+"""Each selection rule against values worked by hand, and against its definition over the whole history."""
+
+import math
+from collections import Counter
+from itertools import pairwise, permutations, product
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.stats import chisquare
+
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.learning.bandit import Bandit
+from kswarms.agents.learning.selection_rules import (
+    RULES,
+    UCB,
+    DiscountedUCB,
+    Greedy,
+    PeriodicRandom,
+    Rule,
+    UniformRandom,
+)
+from kswarms.agents.streams import Purpose, stream
+
+FIRST_UNTRIED = [UCB(), DiscountedUCB(), Greedy(), PeriodicRandom()]
+SURE = 1e-4
+"""How unlikely draws that are as they should be may look."""
+
+
+class Draws:
+    """A stand-in for a stream that counts what is drawn of it."""
+
+    def __init__(self, value: float = 0.0) -> None:
+        self.value = value
+        self.drawn = 0
+
+    def random(self) -> float:
+        self.drawn += 1
+        return self.value
+
+
+def bandit(*arms: tuple[float, float], time: float = 10.0) -> Bandit:
+    """Build a bandit from Q and N of each arm."""
+    known = Bandit(len(arms))
+    known.reward = [q * time * n for q, n in arms]
+    known.time = [time * n for _, n in arms]
+    known.count = [n for _, n in arms]
+    return known
+
+
+def chosen(rule: Rule, known: Bandit, draws: Draws | None = None) -> int:
+    return rule.choose(known, draws or Draws())  # type: ignore[arg-type]
+
+
+def as_equals(rule: Rule, known: Bandit) -> set[int]:
+    """Return the arms between which a rule draws."""
+    return {chosen(rule, known, Draws(k / 100)) for k in range(100)}
+
+
+def test_ucb_worked_by_hand() -> None:
+    # N = 3 + 1, ln 4 = 1.38629, γ ln N = 0.155 · 1.38629 = 0.214876.
+    # Bonuses: sqrt(0.214876 / 3) = 0.267629, sqrt(0.214876 / 1) = 0.463547, difference 0.195918.
+    rule = UCB(gamma=0.155)
+    assert chosen(rule, bandit((0.5, 3), (0.3040, 1))) == 0  # 0.767629 > 0.767547
+    assert chosen(rule, bandit((0.5, 3), (0.3042, 1))) == 1  # 0.767629 < 0.767747
+
+
+def test_gamma_is_the_fitted_one_unless_given() -> None:
+    assert UCB() == UCB(gamma=0.1211)
+
+
+def test_ucb_worked_by_hand_with_three_arms() -> None:
+    # N = 1 + 2 + 5 = 8, γ ln N = 1 · 2.079442. Bonuses 1.442027, 1.019667, 0.644894.
+    assert chosen(UCB(gamma=1), bandit((0.0, 1), (0.42, 2), (0.797, 5))) == 0  # 1.4420 1.4397 1.4419
+    assert chosen(UCB(gamma=1), bandit((0.0, 1), (0.43, 2), (0.797, 5))) == 1  # 1.4420 1.4497 1.4419
+    assert chosen(UCB(gamma=1), bandit((0.0, 1), (0.42, 2), (0.798, 5))) == 2  # 1.4420 1.4397 1.4429
+
+
+ARMS = st.lists(st.tuples(st.floats(-1, 1), st.integers(1, 500)), min_size=2, max_size=6)
+
+
+@given(ARMS, st.floats(0, 2))
+def test_ucb_takes_the_greatest_bound(arms: list[tuple[float, int]], gamma: float) -> None:
+    n = sum(count for _, count in arms)
+    bounds = [q + math.sqrt(gamma * math.log(n) / count) for q, count in arms]
+    arm = chosen(UCB(gamma=gamma), bandit(*arms))
+    assert bounds[arm] >= max(bounds) - 1e-9
+
+
+@given(ARMS)
+def test_greedy_takes_the_greatest_value_and_so_does_ucb_that_does_not_explore(
+    arms: list[tuple[float, int]],
+) -> None:
+    known = bandit(*arms)
+    for rule in (Greedy(), UCB(gamma=0)):
+        assert known.value(chosen(rule, known)) == max(known.value(arm) for arm in range(len(arms)))
+
+
+def test_ties_are_broken_by_a_draw_and_only_ties() -> None:
+    draws = Draws()
+    for rule in (UCB(), DiscountedUCB(), Greedy(), PeriodicRandom()):
+        assert as_equals(rule, bandit((0.5, 4), (0.25, 4), (0.5, 4))) == {0, 2}
+        chosen(rule, bandit((0.5, 4), (0.25, 4)), draws)
+    assert draws.drawn == 0
+
+
+@pytest.mark.parametrize("rule", FIRST_UNTRIED, ids=repr)
+def test_arms_never_tried_come_first_however_good_the_others_are(rule: Rule) -> None:
+    known = bandit((1.0, 1000), (0.0, 0), (-1.0, 1000), (0.0, 0))
+    assert as_equals(rule, known) == {1, 3}
+    known.update(3, -5.0, 1.0)
+    assert as_equals(rule, known) == {1}
+    known.choices = 4  # not even the one choice in five that is random
+    assert as_equals(rule, known) == {1}
+
+
+@pytest.mark.parametrize("rule", FIRST_UNTRIED, ids=repr)
+def test_the_order_of_arms_never_tried_is_random(rule: Rule) -> None:
+    orders: Counter[tuple[int, ...]] = Counter()
+    for seed in range(600):
+        known, draws, order = Bandit(3), stream(seed, 0, Purpose.EXPLORE), []
+        for _ in range(3):
+            order.append(rule.choose(known, draws))
+            known.choices += 1
+            known.update(order[-1], 1.0, 2.0, rule.factor)
+        orders[tuple(order)] += 1
+    assert set(orders) == set(permutations(range(3)))
+    assert chisquare(list(orders.values())).pvalue > SURE
+
+
+@pytest.mark.parametrize("every", [5, 20, 1, 7])
+def test_periodic_random_draws_one_choice_in_so_many(every: int) -> None:
+    rule, draws, known = PeriodicRandom(every=every), Draws(), Bandit(2)
+    drawn_at = []
+    for choice in range(1, 101):
+        before = draws.drawn
+        arm = chosen(rule, known, draws)
+        known.choices += 1
+        known.update(arm, [1.0, 2.0][arm], 4.0)
+        if choice > 2:  # the first two are those that were never tried
+            if draws.drawn > before:
+                drawn_at.append(choice)
+            assert arm == (0 if draws.drawn > before else 1)  # 0 is what is drawn, 1 what is best
+    assert drawn_at == [choice for choice in range(3, 101) if choice % every == 0]
+
+
+def test_periodic_random_draws_every_arm_alike() -> None:
+    known, draws = bandit((0.1, 9), (0.9, 9), (0.2, 9)), stream(1, 2, Purpose.EXPLORE)
+    known.choices = 4
+    counts = Counter(PeriodicRandom().choose(known, draws) for _ in range(3000))
+    assert chisquare([counts[arm] for arm in range(3)]).pvalue > SURE
+    known.choices = 5
+    assert {PeriodicRandom().choose(known, draws) for _ in range(100)} == {1}
+
+
+@pytest.mark.parametrize(
+    "known",
+    [Bandit(4), bandit((1.0, 500), (-1.0, 1), (0.0, 1), (0.0, 1)), bandit((1.0, 5), *3 * [(0.0, 0)])],
+    ids=["nothing known", "one far better", "one tried"],
+)
+def test_uniform_random_takes_every_arm_alike_whatever_is_known(known: Bandit) -> None:
+    draws = stream(7, 3, Purpose.EXPLORE)
+    counts = Counter(UniformRandom().choose(known, draws) for _ in range(4000))
+    assert chisquare([counts[arm] for arm in range(4)]).pvalue > SURE
+
+
+def test_uniform_random_does_not_remember_its_choices() -> None:
+    draws, known = stream(7, 3, Purpose.EXPLORE), Bandit(2)
+    arms = [UniformRandom().choose(known, draws) for _ in range(4001)]
+    pairs = Counter(pairwise(arms))
+    assert chisquare([pairs[pair] for pair in product((0, 1), repeat=2)]).pvalue > SURE
+
+
+def test_the_test_of_uniformity_can_fail() -> None:
+    draws = np.random.default_rng(5)
+    counts = Counter(int(draws.random() < 0.55) for _ in range(4000))
+    assert chisquare([counts[arm] for arm in range(2)]).pvalue < SURE
+
+
+@pytest.mark.parametrize(("discount", "gamma"), [(0.99, 0.155), (0.9, 0.6), (0.5, 2.0), (1.0, 0.155)])
+def test_discounted_ucb_is_the_definition_over_the_whole_history(discount: float, gamma: float) -> None:
+    """Garivier & Moulines: N_λ(a) = Σ_s λ^(t−s) 1{a_s = a}, and ΣR, ΣT likewise, at each of 400 conflicts."""
+    rule, known, world = DiscountedUCB(discount=discount, gamma=gamma), Bandit(3), np.random.default_rng(11)
+    assert rule.factor == discount
+    arms: list[int] = []
+    rewards: list[float] = []
+    times: list[float] = []
+    draws = stream(0, 0, Purpose.EXPLORE)
+    for t in range(400):
+        arm = rule.choose(known, draws)
+        if t >= 3:
+            weight = discount ** np.arange(t - 1, -1, -1.0)
+            of_arm = [weight * (np.array(arms) == a) for a in range(3)]
+            count = np.array([w.sum() for w in of_arm])
+            reward = np.array([w @ np.array(rewards) for w in of_arm])
+            time = np.array([w @ np.array(times) for w in of_arm])
+            assert known.count == pytest.approx(count)
+            bounds = reward / time + np.sqrt(gamma * np.log(count.sum()) / count)
+            assert bounds[arm] >= bounds.max() - 1e-9
+        times.append(world.uniform(1.0, 20.0))
+        # What is best drifts from one arm to the next, as discounting is meant for.
+        rewards.append(times[-1] * (0.5 + 0.3 * math.cos(t / 60 + 2 * arm) + world.normal(0.0, 0.05)))
+        arms.append(arm)
+        known.choices += 1
+        known.update(arm, rewards[-1], times[-1], rule.factor)
+    assert min(Counter(arms).values()) > 5
+
+
+def test_discounting_defaults_and_what_it_is_of() -> None:
+    assert DiscountedUCB() == DiscountedUCB(gamma=0.1211, discount=0.99)
+    assert {name for name, rule in RULES.items() if rule().factor != 1.0} == {"discounted-ucb"}
+
+
+@pytest.mark.parametrize(("discount", "gamma"), [(0.5, 0.0), (0.9, 0.0), (1e-3, 0.155)])
+def test_discounted_ucb_goes_on_when_an_arm_is_all_but_forgotten(discount: float, gamma: float) -> None:
+    rule, known = DiscountedUCB(discount=discount, gamma=gamma), Bandit(2)
+    for _ in range(8000):  # discounted so often, the weight of an arm falls below the smallest number
+        arm = chosen(rule, known)
+        known.update(arm, [0.0, 1.0][arm], [0.1, 2.0][arm], rule.factor)
+
+
+@pytest.mark.parametrize(
+    ("rule", "field", "value"),
+    [
+        (UCB, "gamma", -0.001),
+        (UCB, "gamma", float("nan")),
+        (UCB, "gamma", float("inf")),
+        (DiscountedUCB, "discount", 0.0),
+        (DiscountedUCB, "discount", 1.001),
+        (DiscountedUCB, "discount", float("nan")),
+        (DiscountedUCB, "gamma", -0.001),
+        (PeriodicRandom, "every", 0),
+        (PeriodicRandom, "every", 2.5),
+        (PeriodicRandom, "every", float("nan")),
+    ],
+)
+def test_out_of_range(rule: type[Rule], field: str, value: float) -> None:
+    with pytest.raises(InputError) as caught:
+        rule(**{field: value})
+    assert caught.value.field == field
+    assert repr(caught.value.value) == repr(value)
+    assert "must be" in caught.value.allowed

@@ -1,0 +1,123 @@
+"""Bad input to learning, as a user writes it: one line that names the field, the value, what is allowed."""
+
+import pytest
+
+from kswarms.agents.actions import AWAY, TOWARDS, Action
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.policies.interface import Setting
+from kswarms.agents.policies.registry import make_policy
+from kswarms.agents.streams import Streams
+from kswarms.model.foraging import ForagingModel
+
+ACTIONS = (
+    Action(name="flight", direction=AWAY, duration=1.8),
+    Action(name="fight", direction=TOWARDS, duration=1.0),
+)
+SETTING = Setting(1, 2, ACTIONS, Streams(0, 0))
+
+# Policy, field, how the value looks, a part of what is allowed.
+WRONG = [
+    ("lerner", "policy", "'lerner'", "inter-learner"),
+    ("", "policy", "''", "inter-learner"),
+    ("learner(", "policy", "'learner('", "name(key=value, …)"),
+    ("learner('wlu')", "policy", "\"learner('wlu')\"", "name(key=value, …)"),
+    ("learner(about=inter)", "policy", "'learner(about=inter)'", "name(key=value, …)"),
+    ("learner(about='others')", "policy.about", "'others'", "inter, intra or both"),
+    ("learner(otherwise='hide')", "policy.otherwise", "'hide'", "flight, fight"),
+    ("learner(otherwise=['flight'])", "policy.otherwise", "['flight']", "flight, fight"),
+    ("learner(otherwise=0)", "policy.otherwise", "0", "flight, fight"),
+    ("learner(reward='wul')", "policy.reward", "'wul'", "wlu, individual, single-swarm"),
+    ("learner(reward=0.125)", "policy.reward", "0.125", ""),
+    ("learner(rule='ucb2')", "policy.rule", "'ucb2'", "ucb, discounted-ucb, greedy"),
+    ("learner(rule=None)", "policy.rule", "None", ""),
+    ("learner(rule='ucb(gamma=-0.1)')", "policy.rule.gamma", "-0.1", "greater than or equal to 0"),
+    ("learner(rule='ucb(gamma=1e999)')", "policy.rule.gamma", "inf", "finite"),
+    ("learner(rule='ucb(gamma=\"nan\")')", "policy.rule.gamma", "'nan'", "finite"),
+    ("learner(rule='ucb(gamma=nan)')", "policy.rule", "'ucb(gamma=nan)'", "plain values"),
+    ("learner(rule='greedy(gamma=1)')", "policy.rule.gamma", "1", "no such field"),
+    ("learner(rule='discounted-ucb(discount=0)')", "policy.rule.discount", "0", "greater than 0"),
+    ("learner(rule='discounted-ucb(discount=1.1)')", "policy.rule.discount", "1.1", "or equal to 1"),
+    ("learner(rule='periodic-random(every=0)')", "policy.rule.every", "0", "greater than or equal to 1"),
+    ("learner(rule='periodic-random(every=2.5)')", "policy.rule.every", "2.5", "integer"),
+    ("learner(reward='wlu(delta=-0.1)')", "policy.reward.delta", "-0.1", "greater than or equal to 0"),
+    ("learner(reward='wlu(delta=1.1)')", "policy.reward.delta", "1.1", "less than or equal to 1"),
+    ("learner(reward='wlu(b=0)')", "policy.reward.b", "0", "greater than 0"),
+    ("learner(reward='wlu(b=3)')", "policy.reward.b", "3", "less than 3"),
+    ("learner(reward='wlu(gamma=3)')", "policy.reward.gamma", "3", "delta, b"),
+    ("learner(reward='individual(delta=2)')", "policy.reward.delta", "2", "less than or equal to 1"),
+    ("learner(reward='individual(half=7)')", "policy.reward.half", "7", "boolean"),
+    ("learner(reward='single-swarm(kappa=-1)')", "policy.reward.kappa", "-1", "greater than or equal to 0"),
+    ("avoid+learner(rule='no')", "policy.rule", "'no'", "ucb"),
+]
+
+
+@pytest.mark.parametrize(("text", "field", "value", "allowed"), WRONG, ids=[row[0] for row in WRONG])
+def test_the_line_names_field_value_and_what_is_allowed(
+    text: str, field: str, value: str, allowed: str
+) -> None:
+    with pytest.raises(InputError) as caught:
+        ForagingModel(n=4, policies=f"avoid,{text}", duration=1.0)
+    error = caught.value
+    assert error.field.removeprefix("swarms.1.") == field
+    assert repr(error.value) == value
+    assert allowed in error.allowed
+    assert len(str(error).splitlines()) == 1
+
+
+@pytest.mark.parametrize("text", ["learner(gamma=0.1)", "avoid(delta=1)", "random(p=0.3)"])
+def test_an_argument_that_a_policy_does_not_take_is_refused_in_the_users_words(text: str) -> None:
+    with pytest.raises(InputError) as caught:
+        make_policy(text, SETTING)
+    for word in ("__init__", "positional", "_fixed()", "Checked"):
+        assert word not in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["delta", "b"])
+@pytest.mark.parametrize("opponent", [3, 0, -1])
+def test_an_opponent_that_is_not_in_the_game_is_refused(name: str, opponent: int) -> None:
+    with pytest.raises(InputError) as caught:
+        make_policy(f"learner(reward='wlu({name}={{{opponent}: 0.5}})')", SETTING)
+    assert caught.value.field.startswith("policy.reward")
+    assert str(opponent) in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("about", "unknown", "known"), [("inter-learner", 2, 1), ("intra-learner", 1, 2)]
+)
+@pytest.mark.parametrize("name", ["delta", "b"])
+def test_an_opponent_that_nothing_is_learned_about_is_refused(
+    name: str, about: str, unknown: int, known: int
+) -> None:
+    setting = SETTING._replace(swarm=1, swarms=2)
+    make_policy(f"{about}(reward='wlu({name}={{{known}: 0.5}})')", setting)
+    with pytest.raises(InputError, match=f"names swarm {unknown}, which it learns nothing about"):
+        make_policy(f"{about}(reward='wlu({name}={{{unknown}: 0.5}})')", setting)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "avoid(within=1)",
+        "avoid(against=1)",
+        "attack(within='x')",
+        "inter-learner(about='intra')",
+        "intra-learner(about='both')",
+    ],
+)
+def test_what_makes_a_policy_what_it_is_called_is_no_argument_of_it(text: str) -> None:
+    with pytest.raises(InputError):
+        make_policy(text, SETTING)
+
+
+def test_an_action_takes_no_arguments_and_the_line_does_not_call_it_unknown() -> None:
+    with pytest.raises(InputError) as caught:
+        make_policy("flight(duration=1)", SETTING)
+    assert "flight" not in caught.value.allowed.split("one of")[-1]
+
+
+@pytest.mark.parametrize("learning", [-1.0, float("nan"), float("inf"), "long"])
+def test_time_for_learning_out_of_range(learning: float) -> None:
+    with pytest.raises(InputError) as caught:
+        ForagingModel(n=4, policies="avoid,learner", learning=learning)
+    assert caught.value.field == "learning"
+    assert repr(caught.value.value) == repr(learning)

@@ -1,0 +1,41 @@
+"""Streams are named by seed, robot and purpose, and by nothing else."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from kswarms.agents.streams import WORLD, Purpose, stream
+
+
+def first_draws(seed: int, robot: int, purpose: Purpose) -> tuple[float, ...]:
+    return tuple(stream(seed, robot, purpose).random(4))
+
+
+def test_a_name_gives_the_same_draws_again() -> None:
+    assert first_draws(5, 3, Purpose.LEG) == first_draws(5, 3, Purpose.LEG)
+
+
+def test_every_other_name_gives_other_draws() -> None:
+    names = list(itertools.product((0, 1, 2**40), (0, 1, WORLD), Purpose))
+    assert len({first_draws(*name) for name in names}) == len(names)
+
+
+def test_drawing_from_one_stream_leaves_the_others_alone() -> None:
+    first, second = stream(0, 0, Purpose.LEG), stream(0, 1, Purpose.LEG)
+    first.random(1000)
+    assert tuple(second.random(4)) == first_draws(0, 1, Purpose.LEG)
+
+
+def test_streams_of_neighbouring_names_are_not_correlated() -> None:
+    draws = np.array([stream(0, robot, Purpose.WANDER).random(2000) for robot in range(20)])
+    correlations = np.corrcoef(draws)[np.triu_indices(20, 1)]
+    assert np.abs(correlations).max() < 4.5 / np.sqrt(2000)
+
+
+@pytest.mark.parametrize(
+    ("purpose", "value"),
+    [("POSITION", 0), ("HEADING", 1), ("LEG", 2), ("WANDER", 3), ("WALL", 4), ("VACANT", 5), ("STATIONS", 6)],
+)
+def test_the_value_of_a_purpose_never_changes(purpose: str, value: int) -> None:
+    assert Purpose[purpose] == value

@@ -1,0 +1,304 @@
+"""What the first figures show, and how they are written."""
+
+from pathlib import Path
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PathCollection, PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.figures.over_n import (
+    TIME_SHARES,
+    draw,
+    figure_of,
+    pucks_over_n,
+    quantities,
+    sud_over_n,
+    time_shares,
+)
+from kswarms.analysis.figures.style import SAFE, SOURCE
+from tests.helpers.result_rows import DENSITIES, runs_of
+
+PNG = b"\x89PNG\r\n\x1a\n"
+
+
+def curves(axes: Axes) -> dict[str, Line2D]:
+    """Find the curves by the names that the legend gives them."""
+    handles, labels = axes.get_legend_handles_labels()
+    return dict(zip(labels, handles, strict=True))
+
+
+def heights(line: Line2D) -> list[float]:
+    return [float(value) for value in np.asarray(line.get_ydata())]
+
+
+def points(axes: Axes) -> list[np.ndarray]:
+    """Find the single seeds (n, value) of each curve."""
+    return [
+        np.asarray(drawn.get_offsets()) for drawn in axes.collections if isinstance(drawn, PathCollection)
+    ]
+
+
+def legend(figure: Figure) -> list[str]:
+    (drawn,) = figure.legends
+    return [text.get_text() for text in drawn.get_texts()]
+
+
+def test_swarms_have_the_form_of_the_source() -> None:
+    (axes,) = pucks_over_n(runs_of("fig-x", swarms=(1, 2, 3)), "fig-x").axes
+    forms = {
+        label: (line.get_color(), line.get_linestyle(), line.get_marker(), line.get_markerfacecolor())
+        for label, line in curves(axes).items()
+    }
+    assert forms == {
+        "S1: avoid": ("green", "--", "o", "white"),
+        "S2: attack": ("red", "--", "o", "red"),
+        "S3: aggressive": ("blue", "-.", "^", "blue"),
+    }
+
+
+def test_curve_is_the_mean_over_the_seeds_of_its_own_scenario() -> None:
+    runs = pd.concat([runs_of("fig-x"), runs_of("fig-y").assign(pucks=0)])
+    (axes,) = pucks_over_n(runs, "fig-x").axes
+    assert heights(curves(axes)["S1: avoid"]) == [16, 26, 36]
+    assert heights(curves(axes)["S2: attack"]) == [26, 36, 46]
+
+
+def test_every_seed_is_a_point_beside_its_density() -> None:
+    (axes,) = pucks_over_n(runs_of("fig-x"), "fig-x").axes
+    of_s1, of_s2 = points(axes)
+    assert sorted(of_s1[:, 1]) == sorted([15, 17] * 2 + [25, 27] * 2 + [35, 37] * 2)
+    assert len(of_s2) == 4 * len(DENSITIES)
+    assert set(of_s1[:, 0]).isdisjoint(of_s2[:, 0])
+    assert np.abs(of_s1[:, 0] - np.repeat(DENSITIES, 4)).max() <= 1
+    assert np.abs(of_s2[:, 0] - np.repeat(DENSITIES, 4)).max() <= 1
+
+
+def test_band_is_an_interval_of_the_mean_whatever_the_order_of_rows() -> None:
+    runs = runs_of("fig-x", seeds=8)
+    runs["pucks"] += np.random.default_rng(3).integers(0, 9, len(runs))
+    bands = []
+    for shuffled in (runs, runs.sample(frac=1, random_state=1)):
+        (axes,) = pucks_over_n(shuffled.sort_values("swarm", kind="stable"), "fig-x").axes
+        band = next(drawn for drawn in axes.collections if isinstance(drawn, PolyCollection))
+        bands.append(np.asarray(band.get_paths()[0].vertices))
+    assert np.array_equal(bands[0], bands[1])
+    at_6 = runs[(runs["n"] == 6) & (runs["swarm"] == 1)]["pucks"]
+    edges = bands[0][bands[0][:, 0] == 6][:, 1]
+    assert at_6.min() < edges.min() < at_6.mean() < edges.max() < at_6.max()
+
+
+def test_conditions_of_one_swarm_are_a_curve_each() -> None:
+    runs = runs_of("fig-6.15", swarms=(1,), conditions=("flight 50 ms", "fight"))
+    figure = pucks_over_n(runs, "fig-6.15")
+    (axes,) = figure.axes
+    assert legend(figure) == ["flight 50 ms", "fight"]
+    assert heights(curves(axes)["fight"]) == [116, 126, 136]
+    assert len({line.get_color() for line in curves(axes).values()}) == 2
+
+
+def test_conditions_of_several_swarms_keep_the_swarms_markers() -> None:
+    figure = pucks_over_n(runs_of("fig-x", conditions=("", "delta=0.1")), "fig-x")
+    (axes,) = figure.axes
+    assert legend(figure) == [
+        "–, S1: avoid",
+        "–, S2: attack",
+        "delta=0.1, S1: avoid",
+        "delta=0.1, S2: attack",
+    ]
+    open_marker, filled = curves(axes)["delta=0.1, S1: avoid"], curves(axes)["delta=0.1, S2: attack"]
+    assert open_marker.get_markerfacecolor() == "white"
+    assert filled.get_markerfacecolor() == filled.get_color() == open_marker.get_color()
+
+
+def test_legend_leaves_out_the_arguments_of_a_policy() -> None:
+    runs = runs_of("fig-x").replace(
+        {"policy": {"attack": """avoid+inter-learner(reward="wlu(delta=0.1, b=1.5)", rule='ucb')"""}}
+    )
+    assert legend(pucks_over_n(runs, "fig-x")) == ["S1: avoid", "S2: avoid+inter-learner"]
+    own = runs_of("fig-x").replace({"policy": {"attack": "far/away/my_file.py:Cautious(note='a:b')"}})
+    assert legend(pucks_over_n(own, "fig-x")) == ["S1: avoid", "S2: Cautious"]
+
+
+def test_labels_title_and_seeds() -> None:
+    runs = runs_of("fig-x")
+    figure = pucks_over_n(
+        runs, "fig-x", "a title of words that is far too long for one line of the figure " * 2
+    )
+    (axes,) = figure.axes
+    assert axes.get_xlabel() == "number of robots in all, N"
+    assert axes.get_ylabel() == "pucks deposited by the swarm"
+    assert figure.get_suptitle().startswith("fig-x: a title")
+    assert max(map(len, figure.get_suptitle().splitlines())) <= 75
+    whole = pucks_over_n(runs, "fig-x", "an inter-learner " * 8).get_suptitle()
+    assert not any(line.endswith("inter-") for line in whole.splitlines())
+    assert figure.legends[0].get_title().get_text().startswith("mean of 4 seeds")
+    assert list(axes.get_xticks()) == [6, 16, 26]
+    fewer = runs[(runs["n"] != 6) | (runs["seed"] == 0)]
+    assert pucks_over_n(fewer, "fig-x").legends[0].get_title().get_text().startswith("mean of 1 to 4 seeds")
+    assert pucks_over_n(runs, "fig-x").get_suptitle() == "fig-x"
+
+
+def test_one_density_has_a_bar_for_each_interval() -> None:
+    figure = pucks_over_n(runs_of("fig-x", densities=[20], seeds=4), "fig-x")
+    bars = [drawn for drawn in figure.axes[0].collections if isinstance(drawn, LineCollection)]
+    ends = [sorted(segment[:, 1]) for drawn in bars for segment in drawn.get_segments()]
+    assert [low < mean < high for (low, high), mean in zip(ends, (30, 40), strict=True)] == [True, True]
+
+
+def test_one_seed_at_one_density_without_pucks() -> None:
+    runs = runs_of("fig-x", densities=[20], seeds=1).assign(pucks=0)
+    figure = pucks_over_n(runs, "fig-x")
+    (axes,) = figure.axes
+    assert figure.legends[0].get_title().get_text() == "one seed"
+    assert points(axes) == []
+    assert axes.get_xlim()[0] < 20 < axes.get_xlim()[1]
+    assert axes.get_ylim()[0] < 0 < axes.get_ylim()[1]
+
+
+def test_many_densities_get_the_ticks_of_matplotlib() -> None:
+    (axes,) = pucks_over_n(runs_of("fig-x", densities=range(2, 82, 2), seeds=2), "fig-x").axes
+    assert len(axes.get_xticks()) < 20
+
+
+def test_time_shares_in_all_and_by_kind_of_conflict() -> None:
+    figure = time_shares(runs_of("fig-6.3"), "fig-6.3")
+    shown = {
+        axes.get_title(): {label: heights(line) for label, line in curves(axes).items()}
+        for axes in figure.axes
+    }
+    assert list(shown) == ["total", "inter-swarm", "intra-swarm"]
+    expected = {
+        "total": (30 / 400, 60 / 400),
+        "inter-swarm": (20 / 400, 40 / 400),
+        "intra-swarm": (10 / 400, 20 / 400),
+    }
+    for kind, (first, second) in expected.items():
+        assert shown[kind]["S1: avoid"] == pytest.approx([first] * 3)
+        assert shown[kind]["S2: attack"] == pytest.approx([second] * 3)
+    assert figure.axes[0].get_ylabel() == "share of time, T(a) / (T(a) + T(p))"
+    assert legend(figure) == ["S1: avoid", "S2: attack"]
+
+
+def test_sud_of_the_second_swarm_by_condition() -> None:
+    runs = runs_of("fig-7.10", swarms=(1, 2, 3), conditions=("avoid", "delta=0.1"))
+    figure = sud_over_n(runs, "fig-7.10")
+    (axes,) = figure.axes
+    assert legend(figure) == ["avoid", "delta=0.1"]
+    assert heights(curves(axes)["avoid"]) == [-14, -4, 6]
+    assert axes.get_ylabel() == "SUD of S2 (pucks)"
+    (of_s3,) = sud_over_n(runs, "fig-7.10", swarm=3).axes
+    assert heights(curves(of_s3)["avoid"]) == [-24, -14, -4]
+
+
+@pytest.mark.parametrize("show", [pucks_over_n, time_shares, sud_over_n])
+def test_scenario_without_runs(show: type) -> None:
+    with pytest.raises(InputError, match=r"scenario='fig-6\.9': must be one of fig-x, fig-y"):
+        show(pd.concat([runs_of("fig-y"), runs_of("fig-x")]), "fig-6.9")
+
+
+def test_swarm_that_the_scenario_does_not_have() -> None:
+    with pytest.raises(InputError, match=r"swarm=2: must be one of 1 in fig-6\.15"):
+        sud_over_n(runs_of("fig-6.15", swarms=(1,)), "fig-6.15")
+
+
+def test_draw_writes_each_scenario_that_has_runs(tmp_path: Path) -> None:
+    runs = pd.concat([runs_of("fig-6.1a"), runs_of("fig-6.3"), runs_of("fig-7.10"), runs_of("fig-7.12")])
+    runs.to_parquet(tmp_path / "runs.parquet")
+    paths = draw(tmp_path, ["fig-7.10", "fig-6.3", "fig-7.1", "fig-6.1a"], {"fig-6.1a": "avoid and avoid"})
+    assert paths == [tmp_path / "figures" / f"{name}.png" for name in ("fig-7.10", "fig-6.3", "fig-6.1a")]
+    assert set(paths) == set((tmp_path / "figures").iterdir())
+    assert all(path.read_bytes().startswith(PNG) for path in paths)
+
+
+SHOWING_SUD = ("6.10a", "6.10b", "6.12", "6.14", "7.4", "7.6", "7.8", "7.10", "7.11", "7.19")
+
+
+@pytest.mark.parametrize(
+    ("scenario", "label"),
+    [
+        ("fig-6.2", "pucks deposited by the swarm"),
+        ("fig-6.4a", "pucks deposited by the swarm"),
+        ("fig-6.15", "pucks deposited by the swarm"),
+        ("fig-6.3", "share of time"),
+        *((f"fig-{number}", "SUD of S2 (pucks)") for number in SHOWING_SUD),
+    ],
+)
+def test_the_figure_of_a_scenario_shows_what_it_is_for(scenario: str, label: str) -> None:
+    figure = figure_of(runs_of(scenario), scenario, "its title")
+    assert figure.axes[0].get_ylabel().startswith(label)
+    assert figure.get_suptitle() == f"{scenario}: its title"
+    told = {"pucks": ("pucks",), "SUD": ("sud",), "share": TIME_SHARES}[label.split()[0]]
+    assert quantities(scenario) == told
+
+
+def test_the_source_s_form_has_means_alone() -> None:
+    figure = pucks_over_n(runs_of("fig-x"), "fig-x", look=SOURCE)
+    (axes,) = figure.axes
+    assert list(axes.collections) == []
+    assert heights(curves(axes)["S1: avoid"]) == [16, 26, 36]
+    assert curves(axes)["S1: avoid"].get_color() == "green"
+    assert figure.legends[0].get_title().get_text() == "mean of 4 seeds"
+
+
+def test_safe_colours_keep_the_lines_and_markers_of_the_source() -> None:
+    (ours,) = pucks_over_n(runs_of("fig-x", swarms=range(1, 4)), "fig-x", look=SAFE).axes
+    (source,) = pucks_over_n(runs_of("fig-x", swarms=range(1, 4)), "fig-x").axes
+    for line, as_printed in zip(curves(ours).values(), curves(source).values(), strict=True):
+        assert (line.get_linestyle(), line.get_marker()) == (
+            as_printed.get_linestyle(),
+            as_printed.get_marker(),
+        )
+        assert line.get_color() != as_printed.get_color()
+    assert len({line.get_color() for line in curves(ours).values()}) == 3
+
+
+def test_same_runs_same_picture(tmp_path: Path) -> None:
+    runs_of("fig-x", seeds=8).to_parquet(tmp_path / "runs.parquet")
+    (path,) = draw(tmp_path, ["fig-x"], {})
+    first = path.read_bytes()
+    draw(tmp_path, ["fig-x"], {})
+    assert path.read_bytes() == first
+    runs_of("fig-x", seeds=9).to_parquet(tmp_path / "runs.parquet")
+    draw(tmp_path, ["fig-x"], {})
+    assert path.read_bytes() != first
+
+
+def test_interrupted_writing_leaves_the_old_picture_and_nothing_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    runs_of("fig-x").to_parquet(tmp_path / "runs.parquet")
+    (path,) = draw(tmp_path, ["fig-x"], {})
+    first = path.read_bytes()
+
+    def full_disk(part: Path, picture: bytes) -> None:
+        with part.open("wb") as file:
+            file.write(picture[:100])
+        raise OSError("No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", full_disk)
+    with pytest.raises(InputError, match="must be a place that can be written"):
+        draw(tmp_path, ["fig-x"], {"fig-x": "another title"})
+    assert path.read_bytes() == first
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_figures_that_cannot_be_written(tmp_path: Path) -> None:
+    runs_of("fig-x").to_parquet(tmp_path / "runs.parquet")
+    (tmp_path / "figures").write_text("in the way")
+    with pytest.raises(InputError, match="must be a place that can be written"):
+        draw(tmp_path, ["fig-x"], {})
+
+
+def test_nothing_global_changes(tmp_path: Path) -> None:
+    runs_of("fig-6.3").to_parquet(tmp_path / "runs.parquet")
+    before = dict(mpl.rcParams)
+    draw(tmp_path, ["fig-6.3"], {})
+    assert dict(mpl.rcParams) == before
+    assert plt.get_fignums() == []

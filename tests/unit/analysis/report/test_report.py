@@ -1,0 +1,200 @@
+"""The pieces of a report: what is covered, what a page is made of, where results come from."""
+
+import json
+from pathlib import Path
+from urllib.parse import unquote
+
+import pandas as pd
+import pytest
+from matplotlib.figure import Figure
+
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.figures.style import Look
+from kswarms.analysis.findings import Verdict
+from kswarms.analysis.report.coverage import Planned, coverage, printed
+from kswarms.analysis.report.page import Chapter, Part, Report, Tabled
+from kswarms.analysis.report.provenance import provenance_parts
+from kswarms.analysis.report.record_parts import conflict_parts, recorded_curves
+from kswarms.analysis.report.scenario_parts import argos_parts, verdicts_part
+from kswarms.analysis.text_tables import PrintedTable
+from kswarms.model.description.arena import Arena, build_arena
+from tests.helpers.html_page import Page
+from tests.helpers.result_rows import MET, runs_of
+
+PLAN = {
+    "fig-x": Planned("x", ("",), (6, 16), 4),
+    "fig-y": Planned("y", ("a", "b"), (6, 16, 26), 4),
+    "fig-z": Planned("z", ("",), (6,), 20),
+}
+
+
+def test_coverage_counts_the_games_of_the_plan_and_names_what_is_not_there() -> None:
+    part = runs_of("fig-y", conditions=("a",), densities=(6, 16), seeds=3)
+    rows = coverage(pd.concat([runs_of("fig-x"), part]), PLAN).to_dict("records")
+    assert rows == [
+        {"scenario": "fig-x", "games": 8, "planned": 8, "missing": ""},  # its games at 26 are beside the plan
+        {"scenario": "fig-y", "games": 6, "planned": 24, "missing": "conditions b; N = 26; seeds (3 of 4)"},
+        {"scenario": "fig-z", "games": 0, "planned": 20, "missing": "everything"},
+    ]
+
+
+def test_coverage_of_gaps_that_no_list_tells() -> None:
+    runs = runs_of("fig-y", conditions=("a", "b"), densities=(6, 16, 26))
+    some = runs[(runs["condition"] == "a") | (runs["n"] == 6) | (runs["seed"] < 2)]
+    (row,) = coverage(some, {"fig-y": PLAN["fig-y"]}).to_dict("records")
+    assert row["missing"] == "seeds (2 to 4 of 4)"
+    corner = runs[(runs["condition"] == "a") | (runs["n"] > 6)]
+    (row,) = coverage(corner, {"fig-y": PLAN["fig-y"]}).to_dict("records")
+    assert row["missing"] == "some conditions at some N"
+
+
+def test_what_is_missing_is_printed_by_scenario_and_the_rest_in_a_line() -> None:
+    table = printed(coverage(pd.concat([runs_of("fig-x"), runs_of("fig-y", conditions=("a",))]), PLAN))
+    assert table.rows == [["fig-y", "12", "24", "conditions b"]]
+    assert table.caption == "1 of 3 scenarios are complete, 1 in part; not played: fig-z."
+    whole = printed(coverage(runs_of("fig-x"), {"fig-x": PLAN["fig-x"]}))
+    assert whole.rows == []
+    assert whole.caption == "1 of 1 scenarios are complete, 0 in part."
+
+
+def a_report() -> Report:
+    part = Part("one", "One & only", ["text <b>"], source="a = 1\nb = 2")
+    drawing = Figure(figsize=(9, 2))
+    drawing.subplots()
+    part.show("curve", drawing, 'alt "quoted"', "caption")
+    table = PrintedTable(["N", "x"], [["6", "1.0"]], "below")
+    part.tables.append(Tabled("numbers", "Numbers", table, pd.DataFrame({"N": [6], "x": [1.25]})))
+    return Report(
+        "A title",
+        ["summary"],
+        [Chapter("first", "First", [part]), Chapter("second", "Second", [Part("second", "Second")])],
+    )
+
+
+def test_a_page_holds_everything_itself_and_its_links_lead_somewhere() -> None:
+    html = a_report().to_html()
+    page = Page(html)
+    assert len(page.ids) == len(set(page.ids))
+    assert {"content", "first", "one", "second"} <= set(page.ids)
+    inner = [link for link in page.links if link.startswith("#")]
+    assert set(inner) == {"#content", "#first", "#one", "#second"}
+    assert all(address.startswith(("#", "data:")) for address in page.addresses)
+    (picture,) = page.pictures
+    assert picture["alt"] == 'alt "quoted"'
+    assert "text &lt;b&gt;" in html
+    assert "One &amp; only" in html
+    assert "<script" not in html
+    assert 'class="wide"' in html
+    downloads = [unquote(link.partition(",")[2]) for link in page.links if link.startswith("data:")]
+    assert downloads == ["N,x\n6,1.25\n", "| N | x |\n|--:|--:|\n| 6 | 1.0 |\n\nbelow\n"]
+
+
+def test_a_page_and_its_files_are_written_or_refused(tmp_path: Path) -> None:
+    report = a_report()
+    report.write_page(tmp_path / "page.html")
+    assert (tmp_path / "page.html").read_text() == report.to_html()
+    assert report.write_files(tmp_path / "a" / "b") == 5
+    names = {path.name for path in (tmp_path / "a" / "b").iterdir()}
+    assert names == {"curve.png", "curve.svg", "numbers.csv", "numbers.md", "numbers.html"}
+    with pytest.raises(InputError, match=r"out=.*must be a place that can be written"):
+        report.write_page(tmp_path)
+    with pytest.raises(InputError, match=r"files=.*must be a folder"):
+        report.write_files(tmp_path / "page.html")
+
+
+def test_verdicts_are_counted_and_marked() -> None:
+    part = verdicts_part(
+        [
+            Verdict("a", "A holds.", "holds", 1.234, 0.5, 2.0, "pucks", 20, ""),
+            Verdict("b", "B fails.", "fails", -1.0, None, -0.25, "pucks", 20, "at N = 6"),
+            Verdict("c", "C is not known.", "undecided", 1.0, None, None, "pucks", 3, "too few"),
+            Verdict("d", "D was not played.", "no data", note="no runs"),
+        ]
+    )
+    assert part.text[0] == "4 findings at the seeds given: 1 holds, 1 fails, 1 undecided, 1 no data."
+    (table,) = part.tables
+    assert [row[3] for row in table.printed.rows] == ["1.23 (0.5 … 2)", "-1 (… … -0.25)", "1", "–"]
+    html = table.html
+    assert '<td class="holds">holds</td>' in html
+    assert '<td class="fails">fails</td>' in html
+    assert list(table.frame["finding"]) == ["a", "b", "c", "d"]
+
+
+def test_argos_is_compared_where_it_was_played() -> None:
+    assert list(argos_parts(runs_of("fig-x"))) == []
+    assert list(argos_parts(runs_of("argos-avoid-avoid", densities=[50]))) == []  # ARGoS was not run at 50
+    ((chapter, part),) = argos_parts(runs_of("argos-avoid-avoid", densities=[16]))
+    assert chapter == "argos-"
+    assert part.text[1].startswith("Scores agree in ")
+    assert len(part.tables[0].printed.rows) == 2
+
+
+def test_a_shared_game_is_looked_at_once(tmp_path: Path) -> None:
+    first = runs_of("fig-b", conditions=("x", "y"))
+    runs = pd.concat([first, first[first["condition"] == "x"].assign(scenario="fig-a")])
+    wanted = runs[runs["n"] == 16]["run"].unique()
+    pd.DataFrame({"run": wanted}).to_parquet(tmp_path / "conflicts.parquet")
+    conflicts, robots = recorded_curves(tmp_path, runs)
+    assert [(curve.scenario, curve.condition) for curve in conflicts] == [("fig-b", "x"), ("fig-b", "y")]
+    assert [curve.id for curve in conflicts] == ["fig-b--x", "fig-b--y"]
+    assert conflicts[0].densest()["seed"].tolist() == [0, 1, 2, 3]
+    assert robots == []
+
+
+def test_stations_that_differ_from_seed_to_seed_are_not_drawn_into_one_map(tmp_path: Path) -> None:
+    runs = runs_of("fig-x", densities=[16], seeds=2)
+    games = [MET.assign(run=run) for run in runs["run"].unique()]
+    pd.concat(games).to_parquet(tmp_path / "conflicts.parquet")
+    (curve,), _ = recorded_curves(tmp_path, runs)
+
+    def drawn(layout: str, monkeypatch: pytest.MonkeyPatch) -> list[bool]:
+        shown: list[bool] = []
+
+        def heat_maps(conflicts: pd.DataFrame, title: str, places: Arena | None, look: Look) -> Figure:
+            shown.append(places is not None)
+            return Figure()
+
+        monkeypatch.setattr("kswarms.analysis.figures.heat_maps.heat_maps", heat_maps)
+        chapters = conflict_parts(
+            tmp_path, curve, lambda *key: build_arena(layout, 2, 2.0, 0.16, 0.17, key[-1]), Look()
+        )
+        assert [chapter for chapter, _ in chapters] == ["networks", "maps"]
+        return shown
+
+    with pytest.MonkeyPatch.context() as patch:
+        assert drawn("symmetric", patch) == [True]
+        assert drawn("random-stations", patch) == [False]
+
+
+def test_provenance_without_a_manifest_says_so(tmp_path: Path) -> None:
+    runs_of("fig-x").to_parquet(tmp_path / "runs.parquet")
+    files, made_with, manifest = provenance_parts(tmp_path)
+    assert files.tables[0].printed.rows[0][:2] == ["runs.parquet", "24"]
+    assert "matplotlib 3." in made_with.text[0]
+    assert "no manifest.json" in manifest.text[0]
+
+
+def test_provenance_shows_what_the_manifest_holds(tmp_path: Path) -> None:
+    runs_of("fig-x").to_parquet(tmp_path / "runs.parquet")
+    content = {
+        "kswarms": "0.1.0",
+        "code": "abc",
+        "scenarios": {"fig-x": 'id = "fig-x"\nseeds = 4\n'},
+        "libraries": {"numpy": "2.4"},
+        "sessions": [{"command": "kswarms run fig-x"}],
+        "empty": [],
+    }
+    (tmp_path / "manifest.json").write_text(json.dumps(content))
+    _, _, manifest, *others = provenance_parts(tmp_path)
+    assert manifest.source.splitlines() == ["kswarms: 0.1.0", "code: abc", "empty: []"]
+    assert [part.id for part in others] == ["manifest-scenarios", "manifest-libraries", "manifest-sessions"]
+    assert others[0].source == '# fig-x\nid = "fig-x"\nseeds = 4'
+    assert others[1].source == "numpy: 2.4"
+    assert json.loads(others[2].source) == content["sessions"]
+
+
+@pytest.mark.parametrize(("text", "allowed"), [("{", "readable JSON"), ("[1]", "a JSON object")])
+def test_a_manifest_that_is_none(tmp_path: Path, text: str, allowed: str) -> None:
+    (tmp_path / "manifest.json").write_text(text)
+    with pytest.raises(InputError, match=f"manifest.json': must be {allowed}"):
+        provenance_parts(tmp_path)

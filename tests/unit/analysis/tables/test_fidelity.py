@@ -1,0 +1,177 @@
+"""The comparison with ARGoS on synthetic runs whose verdicts are known."""
+
+from collections.abc import Sequence
+
+import pandas as pd
+import pytest
+from scipy import stats
+
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.results.published import argos_fixed_policies
+from kswarms.analysis.tables.fidelity import against_argos, markdown_table
+
+
+def runs_of(
+    pucks: Sequence[int], share: float = 0.3, scenario: str = "argos-avoid-avoid", n: int = 16, swarm: int = 1
+) -> pd.DataFrame:
+    """One row of `runs.parquet` for each score, all with one share of time in conflict."""
+    lived = 600 * n / 2
+    return pd.DataFrame(
+        {
+            "scenario": scenario,
+            "n": n,
+            "seed": range(len(pucks)),
+            "swarm": swarm,
+            "pucks": pucks,
+            "t_a_intra": 0.25 * share * lived,
+            "t_a_inter": 0.75 * share * lived,
+            "t_p": (1 - share) * lived,
+        }
+    )
+
+
+def argos(first: str, second: str, n: int) -> pd.DataFrame:
+    games = argos_fixed_policies()
+    return games[(games["s1_policy"] == first) & (games["s2_policy"] == second) & (games["n"] == n)]
+
+
+def only_row(runs: pd.DataFrame) -> pd.Series:
+    frame = against_argos(runs)
+    assert len(frame) == 1
+    return frame.iloc[0]
+
+
+def own_form(games: pd.DataFrame) -> pd.DataFrame:
+    """ARGoS games as if they were runs of ours."""
+    parts = [
+        pd.DataFrame(
+            {
+                "scenario": "argos-" + games["s1_policy"] + "-" + games["s2_policy"],
+                "n": games["n"],
+                "swarm": int(k),
+                "pucks": games["score" + k],
+                "t_a_intra": games["ta_intra" + k],
+                "t_a_inter": games["ta_inter" + k],
+                "t_p": games["tp" + k],
+            }
+        )
+        for k in ("1", "2")
+    ]
+    return pd.concat(parts)
+
+
+def test_argos_agrees_with_itself_in_every_row() -> None:
+    frame = against_argos(own_form(argos_fixed_policies()))
+    assert len(frame) == 3 * 5 * 2
+    assert frame["score_difference"].to_numpy() == pytest.approx(0)
+    assert frame["share_difference"].to_numpy() == pytest.approx(0)
+    assert frame["score_fits"].all()
+    assert frame["share_fits"].all()
+
+
+def test_s1_avoids_and_s2_attacks_in_avoid_against_attack() -> None:
+    games = argos("avoid", "attack", 36)
+    frame = against_argos(own_form(games)).set_index("swarm")
+    assert frame["score_theirs"].to_dict() == pytest.approx({1: 34.3, 2: 28.9})
+    lived = 600 * 18
+    expected = ((games["ta_intra2"] + games["ta_inter2"]) / lived).mean()
+    assert frame.loc[2, "share_theirs"] == pytest.approx(expected, abs=1e-4)
+
+
+def test_interval_is_the_one_of_welch() -> None:
+    pucks = [20, 31, 25, 28, 27, 24]
+    row = only_row(runs_of(pucks))
+    theirs = argos("avoid", "avoid", 16)["score1"]
+    expected = stats.ttest_ind(pucks, theirs, equal_var=False).confidence_interval(0.95)
+    assert (row["score_low"], row["score_high"]) == pytest.approx((expected.low, expected.high))
+    assert row["score_difference"] == pytest.approx(sum(pucks) / 6 - 26.0)
+    assert row["score_relative"] == pytest.approx((sum(pucks) / 6 - 26.0) / 26.0)
+    assert (row["seeds_ours"], row["seeds_theirs"]) == (6, 10)
+
+
+# ARGoS: avoid/avoid S1 at N = 16 scores 26.0.
+@pytest.mark.parametrize(
+    ("pucks", "fits"),
+    [
+        ([31] * 20, True),  # +19 %, though 5 pucks and far outside the interval
+        ([32] * 20, False),  # +23 %
+        ([21] * 20, True),  # -19 %
+        ([20] * 20, False),  # -23 %
+        ([10, 60, 35, 20, 55], True),  # +38 %, 10 pucks, but the interval holds 0
+    ],
+)
+def test_score_verdict_by_share_and_by_interval(pucks: list[int], fits: bool) -> None:
+    row = only_row(runs_of(pucks))
+    assert bool(row["score_fits"]) is fits
+
+
+@pytest.mark.parametrize(("more", "fits"), [(1.5, True), (1.6, False)])
+def test_score_verdict_by_pucks_where_few_are_scored(more: float, fits: bool) -> None:
+    # Here 2.2 - 0.7 is more than 1.5 in floating point.
+    theirs = argos("attack", "attack", 26)["score1"].mean()
+    assert theirs == pytest.approx(0.7)
+    tenths = round(10 * (theirs + more))
+    pucks = [tenths // 10 + (game < tenths % 10) for game in range(10)] * 5
+    row = only_row(runs_of(pucks, scenario="argos-attack-attack", n=26))
+    assert row["score_difference"] == pytest.approx(more)
+    assert row["score_low"] > 0
+    assert abs(row["score_difference"]) > 0.2 * theirs
+    assert bool(row["score_fits"]) is fits
+
+
+@pytest.mark.parametrize(("off", "fits"), [(0.06, True), (-0.06, True), (0.061, False), (-0.061, False)])
+def test_share_verdict(off: float, fits: bool) -> None:
+    games = argos("avoid", "avoid", 16)
+    in_conflict = games["ta_intra1"] + games["ta_inter1"]
+    share = (in_conflict / (in_conflict + games["tp1"])).mean()
+    row = only_row(runs_of([26] * 5, share=share + off))
+    assert row["share_difference"] == pytest.approx(off)
+    assert bool(row["share_fits"]) is fits
+
+
+def test_one_game_has_no_interval_to_be_saved_by() -> None:
+    row = only_row(runs_of([60]))
+    assert pd.isna(row["score_low"])
+    assert not row["score_fits"]
+
+
+def test_scores_that_never_vary_have_their_difference_as_interval(monkeypatch: pytest.MonkeyPatch) -> None:
+    constant = argos("avoid", "avoid", 16).assign(score1=0)
+    monkeypatch.setattr("kswarms.analysis.tables.fidelity.argos_fixed_policies", lambda: constant)
+    row = only_row(runs_of([3, 3, 3]))
+    assert (row["score_low"], row["score_high"]) == (3, 3)
+    assert not row["score_fits"]
+    assert pd.isna(row["score_relative"])
+    assert only_row(runs_of([0, 0, 0]))["score_fits"]
+
+
+def test_other_scenarios_and_densities_are_left_out() -> None:
+    runs = pd.concat([runs_of([26, 27]), runs_of([26, 27], scenario="fig-6.1a"), runs_of([9, 8], n=10)])
+    row = only_row(runs)
+    assert (row["scenario"], row["n"], row["swarm"]) == ("argos-avoid-avoid", 16, 1)
+
+
+def test_nothing_to_compare() -> None:
+    with pytest.raises(
+        InputError, match=r"fig-6\.1a.*must include argos-attack-attack, .* N = 6, 16, 26, 36, 46"
+    ):
+        against_argos(runs_of([26, 27], scenario="fig-6.1a"))
+
+
+def test_markdown_says_what_the_frame_says() -> None:
+    frame = against_argos(pd.concat([runs_of([26] * 3), runs_of([60], share=0.9, swarm=2)]))
+    head, rule, first, second = markdown_table(frame).splitlines()
+    assert head.count("|") == rule.count("|") == first.count("|") == second.count("|")
+    cells = [cell.strip() for cell in first.strip("|").split("|")]
+    assert cells[:5] == ["argos-avoid-avoid", "16", "S1", "26.0", "26.0"]
+    assert cells[5].startswith("+0.0 (-")
+    assert cells[6:8] == ["+0 %", "yes"]
+    cells = [cell.strip() for cell in second.strip("|").split("|")]
+    assert cells[5] == "+35.1"
+    assert cells[7] == cells[11] == "**no**"
+
+
+def test_markdown_has_no_relative_difference_from_zero(monkeypatch: pytest.MonkeyPatch) -> None:
+    games = argos("avoid", "avoid", 16).assign(score1=0)
+    monkeypatch.setattr("kswarms.analysis.tables.fidelity.argos_fixed_policies", lambda: games)
+    assert "| – |" in markdown_table(against_argos(runs_of([3, 4])))

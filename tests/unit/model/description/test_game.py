@@ -1,0 +1,214 @@
+"""A game as data: its defaults, what it derives, and what it refuses."""
+
+import json
+import math
+import pickle
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kswarms.agents.actions import Action
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.robot.body import BODIES
+from kswarms.model.description.arena import LAYOUTS
+from kswarms.model.description.game import Game, Swarm, apportion
+from kswarms.model.description.parameters import PRESETS
+
+AVOID = Swarm(policy="avoid", size=10)
+FITTED = PRESETS["fitted"]
+
+
+def game(**fields: Any) -> Game:
+    return Game(**{"swarms": (AVOID, AVOID), **fields})
+
+
+def test_the_defaults_are_those_of_the_experiments() -> None:
+    plain = game()
+    assert (AVOID.drive, AVOID.drive_action) == (0.6, 0.6)
+    assert (plain.layout, plain.body, plain.side, plain.duration) == ("symmetric", "krembot-sim", 2.0, 600.0)
+    assert (plain.puck_limit, plain.supply, plain.parameters) == (None, None, FITTED)
+    assert [action.name for action in plain.action_set] == ["flight", "fight"]
+    assert plain.size == 20
+    assert plain.body_preset == BODIES["krembot-sim"]
+
+
+def test_a_game_is_a_value() -> None:
+    assert game() == game()
+    assert hash(game()) == hash(game())
+    assert pickle.loads(pickle.dumps(game(supply=3))) == game(supply=3) != game()
+
+
+def test_actions_of_its_own_replace_the_standard_ones() -> None:
+    dash = Action(name="dash", direction=-1, duration=0.05)
+    ram = Action(name="ram", direction=1, duration=2.0)
+    assert game(actions=(dash, ram)).action_set == (dash, ram)
+    assert game(actions=(dash,), swarms=(Swarm(policy="dash", size=2),)).action_set == (dash,)
+
+
+@pytest.mark.parametrize("name", ["attack", "learner", "mixed"])
+def test_no_action_has_the_name_of_a_policy(name: str) -> None:
+    dash, ram = Action(name="dash", direction=-1, duration=0.05), Action(name=name, direction=1, duration=2.0)
+    with pytest.raises(InputError, match=f"^actions='{name}': must not have the name of a policy$"):
+        game(actions=(dash, ram))
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_every_layout_has_an_arena(layout: str) -> None:
+    arena = game(layout=layout).arena(3)
+    assert arena.bases.shape == arena.stations.shape == (2, 2)
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"swarms": ()}, "swarms=(): "),
+        (
+            {"swarms": ({"policy": "avoid", "size": 0},)},
+            "swarms.0.size=0: must be greater than or equal to 1",
+        ),
+        (
+            {"swarms": ({"policy": "avoid", "size": 10**400},)},
+            f"swarms.0.size={10**400}: must be less than or equal to 1000000",
+        ),
+        ({"swarms": ({"policy": "avoid", "size": -3},)}, "swarms.0.size=-3: "),
+        ({"swarms": ({"policy": "avoid", "size": 2.5},)}, "swarms.0.size=2.5: must be a valid integer"),
+        (
+            {"swarms": ({"policy": "avoid", "size": 2, "drive": 0},)},
+            "swarms.0.drive=0: must be greater than 0",
+        ),
+        (
+            {"swarms": ({"policy": "avoid", "size": 2, "drive": 1.1},)},
+            "swarms.0.drive=1.1: must be less than",
+        ),
+        ({"swarms": ({"policy": "avoid", "size": 2, "drive": math.nan},)}, "swarms.0.drive=nan: "),
+        ({"swarms": ({"policy": "avoid", "size": 2, "drive_action": -1},)}, "swarms.0.drive_action=-1: "),
+        ({"swarms": (AVOID, {"policy": "flee", "size": 2})}, "policy='flee': must be one of avoid, attack"),
+        ({"swarms": ({"size": 2},)}, "swarms.0.policy=None: is required"),
+        ({"layout": "round"}, "layout='round': must be one of symmetric, nearer-station, random-stations"),
+        ({"body": "epuck"}, "body='epuck': must be one of krembot-sim, krembot, "),
+        ({"absent": (20,)}, "absent=20: must be a robot of the game, 0 to 19"),
+        ({"absent": (3, -1)}, "absent=-1: must be a robot of the game, 0 to 19"),
+        ({"absent": (3, 4, 3)}, "absent=(3, 3, 4): must name each robot once"),
+        ({"absent": (0,), "swarms": ({"policy": "avoid", "size": 1},)}, "absent=(0,): must leave a robot"),
+        ({"absent": (1.5,)}, "absent.0=1.5: must be a valid integer"),
+        ({"absent": (1,), "absent_from": "dinner"}, "absent_from='dinner': must be 'learning' or 'game'"),
+        ({"side": 0}, "side=0: must be greater than 0"),
+        ({"side": -2.0}, "side=-2.0: "),
+        ({"side": math.nan}, "side=nan: "),
+        ({"duration": 0}, "duration=0: "),
+        ({"duration": -600}, "duration=-600: "),
+        ({"duration": math.nan}, "duration=nan: "),
+        ({"duration": math.inf}, "duration=inf: "),
+        ({"puck_limit": 0}, "puck_limit=0: must be greater than or equal to 1"),
+        ({"puck_limit": -1}, "puck_limit=-1: "),
+        ({"supply": 0}, "supply=0: "),
+        ({"supply": 2.5}, "supply=2.5: "),
+        ({"parameters": {"friction": -1}}, "parameters.friction=-1: "),
+        ({"speed": 1}, "speed=1: no such field; there are swarms, layout, "),
+        (
+            {"actions": ({"name": "a", "direction": 1, "duration": 1},) * 2},
+            "actions=['a', 'a']: must have different names",
+        ),
+        ({"parameters": {"base_radius": 0.21}}, "base 1="),
+        ({"parameters": {"station_radius": 0.35}}, "station 1="),
+        ({"swarms": (AVOID,) * 3, "parameters": {"base_radius": 0.19}}, "base 3="),
+        ({"swarms": (Swarm(policy="avoid", size=200),)}, "n=200: robots of radius 0.085 m do not fit"),
+        (
+            {"side": 0.8, "parameters": {"station_radius": 0.05, "base_radius": 0.05}},
+            "n=20: robots of radius",
+        ),
+        ({"parameters": {"period": 0.5}}, "period=0.5: must be so short"),
+        ({"side": 1e7}, "side=10000000.0: must be less than or equal to 10000"),
+        ({"side": True}, "side=True: must be a number"),
+        ({"puck_limit": True}, "puck_limit=True: must be a number"),
+        ({"duration": 1e300}, "duration=1e+300: must be at most 9007199254740992 periods"),
+        ({"learning": 1e300}, "duration=600.0: must be at most 9007199254740992 periods, learning included"),
+        ({"supply": 2**63}, "supply=9223372036854775808: must be less than or equal to 1000000000"),
+        ({"layout": "nearer-station", "swarms": (AVOID,) * 3}, "layout='nearer-station': must have"),
+        ({"layout": "random-stations", "parameters": {"station_radius": 0.6}}, "station_radius=0.6: "),
+        ({"layout": "random-stations", "parameters": {"base_radius": 0.9}}, "base 1="),
+        ({"body": "krembot", "parameters": {"period": 0.2}}, "period=0.2: must be so short"),
+        (
+            {
+                "parameters": {"period": 0.35},
+                "swarms": (Swarm(policy="avoid", size=1, drive=0.1, drive_action=0.9),),
+            },
+            "period=0.35: must be so short",
+        ),
+    ],
+)
+def test_bad_input_is_one_line_with_field_value_and_what_is_allowed(
+    fields: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(InputError) as refusal:
+        game(**fields)
+    assert str(refusal.value).startswith(message)
+    assert "\n" not in str(refusal.value)
+
+
+def test_a_robot_may_cover_eight_tenths_of_its_radius_in_a_period() -> None:
+    fast = (Swarm(policy="avoid", size=2, drive=0.68, drive_action=0.68),)
+    assert game(swarms=fast, parameters=FITTED.replace(period=0.40)).size == 2
+    with pytest.raises(InputError, match=r"^period=0.41: must be so short"):
+        game(swarms=fast, parameters=FITTED.replace(period=0.41))
+
+
+@pytest.mark.parametrize("body", ["krembot-sim", "krembot"])
+@pytest.mark.parametrize("drive", [0.6, 0.7])
+def test_the_drives_of_the_experiments_suit_both_bodies(body: str, drive: float) -> None:
+    assert game(body=body, swarms=(Swarm(policy="avoid", size=2, drive=drive),)).size == 2
+
+
+@pytest.mark.parametrize(
+    ("n", "shares", "sizes"),
+    [
+        (10, [1], [10]),
+        (10, [1, 1], [5, 5]),
+        (11, [1, 1], [6, 5]),
+        (13, [7, 6], [7, 6]),
+        (6, [1, 2, 1], [2, 3, 1]),
+        (10, [1, 1, 1], [4, 3, 3]),
+        (11, [1, 1, 1], [4, 4, 3]),
+        (5, [1, 100], [0, 5]),
+    ],
+)
+def test_apportioning(n: int, shares: list[int], sizes: list[int]) -> None:
+    assert apportion(n, shares) == sizes
+
+
+@given(st.integers(0, 500), st.lists(st.integers(1, 20), min_size=1, max_size=6))
+def test_apportioned_sizes_are_the_proportions_rounded(n: int, shares: list[int]) -> None:
+    sizes = apportion(n, shares)
+    assert sum(sizes) == n
+    for size, share in zip(sizes, shares, strict=True):
+        assert abs(size - n * share / sum(shares)) < 1
+    for k, share in enumerate(shares):
+        for other, its_share in enumerate(shares):
+            if share > its_share or (share == its_share and k < other):
+                assert sizes[k] >= sizes[other]
+
+
+# Absent robots.
+
+
+def test_the_absent_are_named_in_any_order() -> None:
+    assert game(absent=(7, 3)) == game(absent=[3, 7])
+    assert game(absent=(3, 7)).absent == (3, 7)
+    assert game(absent=(3, 7)).size == 20
+
+
+def test_a_game_with_all_its_robots_is_described_as_ever() -> None:
+    """A field more would rename every run."""
+    fields = {*Game.model_fields} - {"absent", "absent_from"}
+    assert {*game().model_dump()} == {*json.loads(game().model_dump_json())} == fields
+    assert game(absent_from="game").model_dump() == game().model_dump()
+
+
+@pytest.mark.parametrize("absent_from", ["learning", "game"])
+def test_a_game_with_absent_robots_can_be_made_from_its_description(absent_from: str) -> None:
+    some = game(absent=(3, 19), absent_from=absent_from)
+    assert Game(**json.loads(some.model_dump_json())) == some
+    assert Game(**some.model_dump()) == some
+    assert {"absent", "absent_from"} <= {*some.model_dump()}

@@ -1,0 +1,147 @@
+"""The game from plain values: each argument reaches the game, and bad ones are refused in one line."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from kswarms.agents.common.errors import InputError
+from kswarms.model.description.game import Game, Swarm
+from kswarms.model.description.parameters import PRESETS
+from kswarms.model.foraging import ForagingModel
+
+
+def test_the_defaults() -> None:
+    model = ForagingModel()
+    assert model.game == Game(swarms=(Swarm(policy="avoid", size=10), Swarm(policy="attack", size=10)))
+    assert model.seed == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "swarms"),
+    [
+        ({"n": 7, "policies": "mixed"}, [("mixed", 7, 0.6, 0.6)]),
+        ({"n": 7, "policies": " avoid , attack"}, [("avoid", 4, 0.6, 0.6), ("attack", 3, 0.6, 0.6)]),
+        (
+            {"n": 13, "policies": "avoid,avoid", "shares": "7:6"},
+            [("avoid", 7, 0.6, 0.6), ("avoid", 6, 0.6, 0.6)],
+        ),
+        (
+            {"n": 8, "policies": "avoid,attack,fight", "shares": "1:2:1", "drives": "0.7,0.6/0.65,0.5"},
+            [("avoid", 2, 0.7, 0.6), ("attack", 4, 0.6, 0.65), ("fight", 2, 0.5, 0.6)],
+        ),
+    ],
+)
+def test_swarms_are_read_from_text(
+    arguments: dict[str, Any], swarms: list[tuple[str, int, float, float]]
+) -> None:
+    game = ForagingModel(**arguments).game
+    assert [(s.policy, s.size, s.drive, s.drive_action) for s in game.swarms] == swarms
+
+
+def test_the_other_arguments_reach_the_game() -> None:
+    model = ForagingModel(
+        layout="nearer-station",
+        body="krembot",
+        parameters="argos, friction=0.2",
+        duration=30.0,
+        side=1.5,
+        puck_limit=5,
+        supply=7,
+        seed=12,
+    )
+    assert model.game == Game(
+        swarms=(Swarm(policy="avoid", size=10), Swarm(policy="attack", size=10)),
+        layout="nearer-station",
+        body="krembot",
+        parameters=PRESETS["argos"].replace(friction=0.2),
+        duration=30.0,
+        side=1.5,
+        puck_limit=5,
+        supply=7,
+    )
+    assert model.seed == 12
+    assert model.supply == [7, 7]
+
+
+def test_a_number_of_numpy_will_do() -> None:
+    assert ForagingModel(n=np.int64(12), seed=np.int64(3), duration=np.float64(20)).game.size == 12  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"n": 1}, "n=1: must be a whole number ≥ 2"),
+        ({"n": 0}, "n=0: "),
+        ({"n": -4}, "n=-4: "),
+        ({"n": 10**400}, f"n={10**400}: must be at most 1000000"),
+        ({"n": 5.5}, "n=5.5: must be a whole number"),
+        ({"n": math.nan}, "n=nan: "),
+        ({"n": "ten"}, "n='ten': "),
+        ({"n": 300}, "n=300: robots of radius 0.085 m do not fit in a square of 2.0 m"),
+        ({"policies": ""}, "policy='': must be one of avoid"),
+        ({"policies": "avoid,flee"}, "policy='flee': must be one of avoid"),
+        ({"shares": "7"}, "shares='7': must be 2 whole numbers"),
+        ({"shares": "7:6:5"}, "shares='7:6:5': must be 2 whole numbers"),
+        ({"shares": "7:0"}, "shares='7:0': must be 2 whole numbers ≥ 1"),
+        ({"shares": "7:-6"}, "shares='7:-6': "),
+        ({"shares": "7:x"}, "shares='7:x': must be 2 whole numbers ≥ 1 separated by ':'"),
+        ({"shares": "7:6.5"}, "shares='7:6.5': "),
+        ({"n": 4, "shares": "1:100"}, "size=0: must be greater than or equal to 1"),
+        ({"drives": "0.7"}, "drives='0.7': must be 2 numbers separated by ','"),
+        ({"drives": "0.7,0.6,0.6"}, "drives='0.7,0.6,0.6': must be 2 numbers"),
+        ({"drives": "0.7,fast"}, "drive='fast': must be a valid number"),
+        ({"drives": "0.7,0"}, "drive='0': must be greater than 0"),
+        ({"drives": "0.7,-0.6"}, "drive='-0.6': must be greater than 0"),
+        ({"drives": "0.7,nan"}, "drive='nan': must be a finite number"),
+        ({"drives": "0.7,0.6/2"}, "drive_action='2': must be less than or equal to 1"),
+        ({"layout": "round"}, "layout='round': must be one of symmetric"),
+        ({"body": "epuck"}, "body='epuck': must be one of krembot-sim"),
+        ({"parameters": "fast"}, "parameters='fast': must begin with one of"),
+        ({"parameters": "fitted, speed=3"}, "speed='3': no such field"),
+        ({"duration": 0}, "duration=0: must be greater than 0"),
+        ({"duration": -1.0}, "duration=-1.0: "),
+        ({"duration": math.nan}, "duration=nan: "),
+        ({"side": 0.0}, "side=0.0: "),
+        ({"side": math.nan}, "side=nan: "),
+        ({"puck_limit": -1}, "puck_limit=-1: "),
+        ({"supply": -1}, "supply=-1: "),
+        ({"supply": 1.5}, "supply=1.5: "),
+        ({"seed": -1}, "seed=-1: must be a whole number ≥ 0"),
+        ({"seed": 1.5}, "seed=1.5: must be a whole number"),
+        ({"seed": None}, "seed=None: must be a whole number"),
+        ({"seed": "7"}, "seed='7': must be a whole number"),
+        ({"record": "video"}, "record='video': must be one of model, agents, conflicts, robots, trajectory"),
+        ({"record": "model,video"}, "record='video': "),
+        ({"sample_period": 0}, "sample_period=0: must be a number of seconds > 0"),
+        ({"sample_period": -1.0}, "sample_period=-1.0: "),
+        ({"sample_period": math.nan}, "sample_period=nan: "),
+        ({"sample_period": math.inf}, "sample_period=inf: "),
+        ({"sample_period": 1e308}, "sample_period=1e+308: must be a number of seconds > 0, ≤ 1e+09"),
+        ({"sample_period": "often"}, "sample_period='often': "),
+        ({"parameters": "fitted, station_radius=1.5", "layout": "random-stations"}, "station_radius=1.5: "),
+        ({"parameters": "fitted, wall_distance=1.5"}, "wall_distance=1.5: "),
+        ({"parameters": "fitted, wall_clearance=1"}, "n=20: robots of radius 0.085 m do not fit in"),
+        ({"parameters": "fitted, wall_clearance=9000"}, "n=20: robots of radius 0.085 m do not fit in"),
+        ({"policies": ["avoid", "attack"]}, "policies=['avoid', 'attack']: must be a text"),
+        ({"policies": None}, "policies=None: must be a text"),
+        ({"shares": 3}, "shares=3: must be a text"),
+        ({"drives": 0.6}, "drives=0.6: must be a text"),
+        ({"parameters": None}, "parameters=None: must be a text"),
+        ({"record": ["model"]}, "record=['model']: must be a text"),
+        ({"seed": True}, "seed=True: must be a whole number"),
+    ],
+)
+def test_bad_input_is_one_line_with_field_value_and_what_is_allowed(
+    arguments: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(InputError) as refusal:
+        ForagingModel(**arguments)
+    assert str(refusal.value).startswith(message)
+    assert "\n" not in str(refusal.value)
+
+
+def test_an_argument_that_does_not_exist_is_refused() -> None:
+    with pytest.raises(TypeError, match="robots"):
+        ForagingModel(robots=3)  # type: ignore[call-arg]

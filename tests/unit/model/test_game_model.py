@@ -1,0 +1,240 @@
+"""The game as a Mesa model: Mesa's view is always true, and what it collects has the documented columns."""
+
+import math
+
+import mesa
+import numpy as np
+import pandas as pd
+import pytest
+
+from kswarms.agents.actions import LONGEST
+from kswarms.agents.theory.swarms import swarm_utility_difference
+from kswarms.model.description.game import Game, Swarm
+from kswarms.model.description.parameters import PRESETS, SHORTEST_PERIOD, SLOWEST_TURN
+from kswarms.model.foraging import ForagingModel
+from kswarms.model.game_model import GameModel
+from kswarms.model.recorder import RECORDS, parse_record
+
+GAME = Game(
+    swarms=(Swarm(policy="avoid", size=4), Swarm(policy="attack", size=5), Swarm(policy="mixed", size=3)),
+    duration=60.0,
+)
+
+
+def played(record: str = "", sample_period: float = 10.0, seed: int = 2) -> GameModel:
+    model = GameModel(GAME, seed, record, sample_period)
+    model.play()
+    return model
+
+
+def test_it_is_a_mesa_model_of_robots_in_a_continuous_space() -> None:
+    model = GameModel(GAME)
+    assert isinstance(model, mesa.Model)
+    assert list(model.agents) == model.robots == list(model.space.agents)
+    assert [robot.index for robot in model.robots] == list(range(12))
+    assert [[robot.swarm for robot in members] for members in model.members] == [[0] * 4, [1] * 5, [2] * 3]
+    assert [robot.policy_name for robot in model.members[2]] == ["avoid", "avoid", "aggressive"]
+    assert model.space.dimensions.tolist() == [[-1, 1], [-1, 1]]
+    assert not model.space.torus
+
+
+def test_what_the_limits_of_the_parameters_allow_can_be_played() -> None:
+    times = dict.fromkeys(("flight_duration", "fight_duration", "leg_mean"), LONGEST)
+    for rest in ({"turning_rate": SLOWEST_TURN}, {"turning_rate": 1e308}, {"leg_mean": 1e-308}):
+        slow = PRESETS["fitted"].replace(period=SHORTEST_PERIOD, conflict_distance=0.5, **(times | rest))
+        model = GameModel(GAME.replace(parameters=slow, duration=1e-4), 2, "robots", LONGEST)
+        model.play()
+        assert model.ended == "time"
+        assert sum(sum(robot.conflicts) for robot in model.robots) > 0
+
+
+def test_positions_are_the_kernels_own_memory() -> None:
+    model = GameModel(GAME)
+    for robot in model.robots:
+        assert np.shares_memory(robot.position, model.fleet.positions)
+        assert np.shares_memory(robot.position, model.space.agent_positions)
+    before = [robot.position.copy() for robot in model.robots]
+    model.env.run(until=15)
+    for robot, start in zip(model.robots, before, strict=True):
+        assert (robot.position == model.fleet.positions[robot.index]).all()
+        assert (robot.pos == robot.position).all()
+        assert math.dist(robot.position, start) <= 15 * 0.015 + 1e-9
+    assert all((robot.position != start).any() for robot, start in zip(model.robots, before, strict=True))
+
+
+def test_a_robot_that_is_put_elsewhere_is_there() -> None:
+    model = GameModel(GAME)
+    model.env.run(until=5)
+    model.robots[0].position = np.array([0.31, -0.27])
+    model.env.run(until=6)
+    assert math.dist(model.robots[0].position, (0.31, -0.27)) < 0.02
+
+
+def test_neighbour_queries_are_true_at_any_time() -> None:
+    model = GameModel(GAME)
+    for until in (1, 40, 133):
+        model.env.run(until=until)
+        for robot in model.robots:
+            distances = {other: math.dist(robot.position, other.position) for other in model.robots}
+            near, found = robot.get_neighbors_in_radius(0.5)
+            assert {*near} == {other for other, d in distances.items() if d <= 0.5 and other is not robot}
+            assert found == pytest.approx([distances[other] for other in near])
+            nearest, _ = robot.get_nearest_neighbors(1)
+            assert distances[nearest[0]] == min(d for other, d in distances.items() if other is not robot)
+
+
+def test_the_models_frame() -> None:
+    model = played("model")
+    frame = model.datacollector.get_model_vars_dataframe()
+    kinds = ("pucks", "sud", "share_a", "share_p")
+    assert set(frame.columns) == {"time", *(f"{kind}_{k}" for kind in kinds for k in (1, 2, 3))}
+    assert frame["time"].tolist() == [0, 10, 20, 30, 40, 50, 60] == model.sample_times
+    start, end = frame.iloc[0], frame.iloc[-1]
+    assert [start[f"{kind}_1"] for kind in kinds] == [0, 0, 0, 1]
+    for row in model.results():
+        k, played_time = row["swarm"], row["size"] * 60.0
+        assert (end[f"pucks_{k}"], end[f"sud_{k}"]) == (row["pucks"], row["sud"])
+        assert end[f"share_a_{k}"] == pytest.approx((row["t_a_intra"] + row["t_a_inter"]) / played_time)
+        assert end[f"share_p_{k}"] == pytest.approx(row["t_p"] / played_time)
+    assert frame.filter(like="pucks").diff().min().min() in (0, np.nan)
+
+
+def test_the_agents_frame() -> None:
+    model = played("agents", sample_period=5.0)
+    frame = model.datacollector.get_agent_vars_dataframe()
+    assert list(frame.columns) == ["swarm", "state", "puck", "x", "y", "heading"]
+    assert frame.index.names == ["Step", "AgentID"]
+    assert len(frame) == 13 * 12
+    assert set(frame["state"]) == {"A", "P"}
+    assert set(frame["puck"]) == {True, False}
+    last = frame.loc[12]
+    for robot in model.robots:
+        row = last.loc[robot.unique_id]
+        assert (row["x"], row["y"]) == tuple(robot.position)
+        assert (row["heading"], row["puck"], row["state"]) == (robot.heading, robot.carrying, robot.state)
+        assert row["swarm"] == robot.swarm + 1
+
+
+def test_the_table_of_conflicts() -> None:
+    model = played("conflicts")
+    table = pd.DataFrame(model.tables()["conflicts"])
+    columns = "phase robot swarm opponent opponent_swarm start x y action t_a t_p active seen reward q"
+    assert list(table.columns) == columns.split()
+    assert table.equals(model.datacollector.get_table_dataframe("conflicts"))
+    swarm = np.array([robot.swarm + 1 for robot in model.robots])
+    assert (table["swarm"] == swarm[table["robot"]]).all()
+    assert (table["opponent_swarm"] == swarm[table["opponent"]]).all()
+    assert (table["robot"] != table["opponent"]).all()
+    assert set(table["phase"]) == {"game"}
+    assert table["active"].between(0, 8).all()
+    for row in table.to_dict("records"):
+        assert [list(swarm[list(seen)]) for seen in row["seen"]] == [
+            [k + 1] * len(s) for k, s in enumerate(row["seen"])
+        ]
+        assert row["opponent"] in row["seen"][row["opponent_swarm"] - 1]
+        assert sum(map(len, row["seen"])) <= row["active"]
+    assert table[["x", "y"]].abs().max().max() <= 1 - 0.085 + 1e-9
+    fights = (table["swarm"] == 2) & (table["opponent_swarm"] != 2)
+    assert set(table.loc[fights, "action"]) == {"fight"}
+    assert set(table.loc[table["swarm"] == 1, "action"]) == {"flight"}
+    for row in model.results():
+        own = table[table["swarm"] == row["swarm"]]
+        inter = own["opponent_swarm"] != row["swarm"]
+        assert (len(own) - inter.sum(), inter.sum()) == (row["conflicts_intra"], row["conflicts_inter"])
+        assert own.loc[~inter, "t_a"].sum() == pytest.approx(row["t_a_intra"])
+        assert own.loc[inter, "t_a"].sum() == pytest.approx(row["t_a_inter"])
+        # Before its first conflict a robot's time belongs to none.
+        first = own.groupby("robot")["start"].min()
+        never = row["size"] - len(first)
+        assert own["t_p"].sum() + first.sum() + 60 * never == pytest.approx(row["t_p"])
+
+
+def test_the_table_of_robots() -> None:
+    model = played("robots")
+    table = pd.DataFrame(model.tables()["robots"])
+    assert list(table.columns) == ["robot", "swarm", "policy", "pucks", "t_a", "t_p", "arms"]
+    assert table["robot"].tolist() == list(range(12))
+    assert (table["t_a"] + table["t_p"]).tolist() == pytest.approx([60.0] * 12)
+    for row in model.results():
+        own = table[table["swarm"] == row["swarm"]]
+        assert len(own) == row["size"]
+        assert own["pucks"].sum() == row["pucks"]
+        assert own["t_p"].sum() == pytest.approx(row["t_p"])
+    assert table["policy"].tolist() == [robot.policy_name for robot in model.robots]
+
+
+def test_the_trajectory() -> None:
+    model = played("trajectory", sample_period=7.0)
+    table = pd.DataFrame(model.tables()["trajectory"])
+    assert list(table.columns) == ["time", "robot", "x", "y", "heading", "state", "puck"]
+    assert table["time"].unique().tolist() == pytest.approx([*range(0, 60, 7), 60])
+    assert (table.groupby("time")["robot"].apply(list).map(lambda robots: robots == list(range(12)))).all()
+    assert table[table["time"] == 60.0][["x", "y"]].to_numpy().tolist() == model.fleet.positions.tolist()
+
+
+@pytest.mark.parametrize(
+    ("record", "tables", "model_vars", "agents"),
+    [
+        ("", set(), False, False),
+        ("model", set(), True, False),
+        ("agents", set(), False, True),
+        ("conflicts", {"conflicts"}, False, False),
+        (" robots , conflicts,", {"robots", "conflicts"}, False, False),
+        (",".join(RECORDS), {"conflicts", "robots", "trajectory"}, True, True),
+    ],
+)
+def test_only_what_is_asked_for_is_recorded(
+    record: str, tables: set[str], model_vars: bool, agents: bool
+) -> None:
+    model = played(record)
+    assert model.tables().keys() == tables
+    assert bool(model.datacollector.model_vars) == model_vars
+    assert bool(model.datacollector.agent_reporters) == agents
+    assert (model.conflict_log is None) == ("conflicts" not in record)
+
+
+def test_records_are_parsed() -> None:
+    assert parse_record("model, agents,,") == {"model", "agents"}
+    assert parse_record("") == frozenset()
+
+
+@pytest.mark.parametrize(
+    ("pucks", "sud"), [([5], [5]), ([5, 3], [2, -2]), ([4, 3, 1], [0, -2, -6]), ([0, 0], [0, 0])]
+)
+def test_sud_is_the_own_score_less_all_others(pucks: list[int], sud: list[int]) -> None:
+    assert [swarm_utility_difference(pucks, k) for k in range(len(pucks))] == sud
+
+
+def test_the_columns_of_results() -> None:
+    rows = played().results()
+    columns = (
+        "swarm size policy pucks sud t_a_intra t_a_inter t_p conflicts_intra conflicts_inter duration ended"
+    )
+    assert [list(row) for row in rows] == [columns.split()] * 3
+    assert [row["policy"] for row in rows] == ["avoid", "attack", "mixed"]
+    assert [type(row["pucks"]) for row in rows] == [int] * 3
+
+
+def test_results_in_the_middle_of_a_game_are_those_so_far() -> None:
+    model = GameModel(GAME, 2)
+    model.env.run(until=217)
+    for row in model.results():
+        assert (row["duration"], row["ended"]) == (pytest.approx(21.7), "")
+        assert row["t_a_intra"] + row["t_a_inter"] + row["t_p"] == pytest.approx(row["size"] * 21.7)
+
+
+def test_playing_on_from_any_point_ends_the_same() -> None:
+    for record in ("", "model"):
+        model = GameModel(GAME, 2, record)
+        model.env.run(until=33)
+        model.step()
+        model.play()
+        model.play()
+        assert model.results() == played().results()
+
+
+def test_the_order_of_creation_does_not_matter() -> None:
+    first, second = ForagingModel(n=6, seed=1), ForagingModel(n=6, seed=1)
+    second.play()
+    first.play()
+    assert first.results() == second.results()

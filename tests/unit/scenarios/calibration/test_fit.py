@@ -1,0 +1,264 @@
+"""The calibration on games of known outcome: what it finds, what it claims, how it is interrupted."""
+
+import json
+import math
+from collections.abc import Generator, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from kswarms.agents.common.errors import InputError
+from kswarms.model.description.parameters import parse_parameters
+from kswarms.scenarios.calibration import games as calibration_games
+from kswarms.scenarios.calibration.fit import Setup, calibrate, error_of, validate
+from kswarms.scenarios.calibration.games import START, learning_game, texts, to_place, to_point
+from kswarms.scenarios.description.toml_files import write_json
+from kswarms.scenarios.runs.run import Run
+
+TARGET = {("avoid", 6): 10.0, ("avoid", 30): 60.0, ("attack", 6): 2.0, ("attack", 30): 30.0}
+TINY = Setup(
+    free=("friction", "gamma"), densities=(6,), seeds=1, generations=3, population=4, validation_seeds=5
+)
+Played = Generator[tuple[Run, float], None, None]
+
+
+def share(run: Run, friction: float, distance: float = START["conflict_distance"]) -> float:
+    """Return a share that meets the table where friction and conflict distance have these values."""
+    opponent, n = run.game.swarms[0].policy, run.n
+    world = run.game.parameters
+    off = abs(math.log(world.friction / friction)) + abs(math.log(world.conflict_distance / distance))
+    noise = np.random.default_rng([run.seed, n, len(opponent)]).normal(0.0, 0.03)
+    return TARGET[opponent, n] / 100 + 0.3 * off + noise
+
+
+class Table:
+    """Plays as `share` says, notes the runs, and stops with an error when it has played so many."""
+
+    def __init__(self, stop_after: float = math.inf, backwards: bool = False, **truth: float) -> None:
+        self.runs: list[Run] = []
+        self._stop_after, self._backwards = stop_after, backwards
+        self._truth = truth or {"friction": 0.27}
+
+    def __call__(self, runs: Sequence[Run]) -> Played:
+        for run in reversed(runs) if self._backwards else runs:
+            if len(self.runs) >= self._stop_after:
+                raise KeyboardInterrupt
+            self.runs.append(run)
+            yield run, share(run, **self._truth)
+
+
+def trace_of(out: Path) -> dict[str, Any]:
+    trace: dict[str, Any] = json.loads((out / "calibration.json").read_text())
+    return trace
+
+
+def test_the_error_is_that_of_the_means_over_seeds() -> None:
+    shares = np.array([[0.1, 0.3], [0.5, 0.5], [1.0, 0.0]])
+    assert error_of(shares, np.array([10.0, 65.0, 50.0])) == pytest.approx((10 + 15 + 0) / 3)
+
+
+def test_the_search_finds_what_the_table_was_made_with(tmp_path: Path) -> None:
+    setup = Setup(free=("friction", "conflict_distance", "gamma"), densities=(6, 30), seeds=2, generations=30)
+    table = Table(friction=0.27, distance=0.1)
+    trace = calibrate(setup, TARGET, table, tmp_path)
+    found = trace["generations"][-1]["mean"]
+    assert found["friction"] == pytest.approx(0.27, rel=0.1)
+    assert found["conflict_distance"] == pytest.approx(0.1, rel=0.1)
+    assert trace["validation"]["gain_low"] > 10
+    assert trace["result"]["beats_start"] is True
+    world = parse_parameters(trace["result"]["parameters"])
+    assert (world.friction, world.conflict_distance) == (found["friction"], found["conflict_distance"])
+    assert trace["result"]["rule"] == f"ucb(gamma={found['gamma']})"
+    assert trace == trace_of(tmp_path)
+
+
+def test_the_start_values_are_kept_if_they_are_the_best(tmp_path: Path) -> None:
+    table = Table(friction=START["friction"])
+    trace = calibrate(TINY.replace(validation_seeds=30), TARGET, table, tmp_path)
+    assert trace["validation"]["gain"] < 0
+    assert trace["result"]["beats_start"] is False
+
+
+def test_a_table_that_does_not_depend_on_the_parameters_decides_nothing(tmp_path: Path) -> None:
+    def flat(runs: Sequence[Run]) -> Played:
+        yield from ((run, 0.25) for run in runs)
+
+    validation = calibrate(TINY, TARGET, flat, tmp_path)["validation"]
+    assert (validation["gain"], validation["gain_low"], validation["gain_high"]) == (0, 0, 0)
+
+
+def test_points_of_a_generation_share_seeds_that_no_other_has(tmp_path: Path) -> None:
+    table = Table()
+    calibrate(TINY, TARGET, table, tmp_path)
+    seeds = [run.seed for run in table.runs]
+    assert seeds[:24] == [10_000] * 8 + [10_001] * 8 + [10_002] * 8  # 4 points, 2 cells
+    assert set(seeds[24:]) == set(range(1000, 1005))
+    assert len(seeds[24:]) == 2 * len(TARGET) * 5  # the validation: start and fitted, all cells, 5 seeds
+    assert len({run.digest for run in table.runs}) == len(table.runs)
+
+
+@pytest.mark.parametrize("games", [0, 1, 5, 8, 17, 24, 30])
+def test_an_interrupted_fit_goes_on_as_if_nothing_had_happened(games: int, tmp_path: Path) -> None:
+    whole, before, after = Table(), Table(stop_after=games), Table(backwards=True)
+    trace = calibrate(TINY, TARGET, whole, tmp_path / "whole")
+    with pytest.raises(KeyboardInterrupt):
+        calibrate(TINY, TARGET, before, tmp_path / "parts")
+    assert calibrate(TINY, TARGET, after, tmp_path / "parts") == trace
+    assert trace_of(tmp_path / "parts") == trace
+    played = [run.digest for run in before.runs + after.runs]
+    assert sorted(played) == sorted(run.digest for run in whole.runs)  # each once
+
+
+def test_what_a_killed_fit_left_is_removed_when_it_goes_on(tmp_path: Path) -> None:
+    for name in ("shares.json", "calibration.json"):
+        (tmp_path / f".unfinished-99999999-{name}").write_text("{")  # no process has this number
+    with pytest.raises(KeyboardInterrupt):
+        calibrate(TINY, TARGET, Table(stop_after=0), tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["shares.json"]
+
+
+def test_more_generations_go_on_from_fewer(tmp_path: Path) -> None:
+    calibrate(TINY, TARGET, Table(), tmp_path / "grown")
+    more = TINY.replace(generations=5)
+    assert calibrate(more, TARGET, Table(), tmp_path / "grown") == calibrate(
+        more, TARGET, Table(), tmp_path / "at once"
+    )
+
+
+def test_the_search_leaves_the_global_generator_alone(tmp_path: Path) -> None:
+    def state() -> list[int]:
+        return list(np.random.get_state()[1])  # noqa: NPY002  # the one that must not be touched
+
+    before = state()
+    calibrate(TINY, TARGET, Table(), tmp_path)
+    assert state() == before
+
+
+def test_another_setup_needs_another_directory_or_a_fresh_start(tmp_path: Path) -> None:
+    calibrate(TINY, TARGET, Table(), tmp_path)
+    other = TINY.replace(free=("friction", "flight_duration"))
+    with pytest.raises(InputError, match="holds a fit of another setup"):
+        calibrate(other, TARGET, Table(), tmp_path)
+    trace = calibrate(other, TARGET, Table(), tmp_path, fresh=True)
+    assert set(trace["start"]) == {"friction", "flight_duration"}
+    assert calibrate(other, TARGET, Table(stop_after=0), tmp_path) == trace
+
+
+@pytest.mark.parametrize("content", ["", "[]", "3", '{"setup": {}}', '{"setup": 1, "shares": {}}'])
+def test_a_file_that_is_none_of_ours_is_refused_and_kept(content: str, tmp_path: Path) -> None:
+    (tmp_path / "shares.json").write_text(content)
+    with pytest.raises(InputError, match=r"holds a shares\.json of something else"):
+        calibrate(TINY, TARGET, Table(), tmp_path)
+    assert (tmp_path / "shares.json").read_text() == content
+
+
+@pytest.mark.parametrize(
+    ("change", "complaint"),
+    [
+        ({"free": ("friction", "viscosity")}, "free='viscosity': must be among conflict_distance"),
+        ({"free": ("friction", "period")}, "free='period': must be among"),
+        ({"free": ("friction",)}, "free='friction': must be two or more"),
+        ({"free": ("gamma", "gamma")}, "free='gamma,gamma': must be two or more"),
+        ({"free": ()}, "free='': must be two or more"),
+        ({"seeds": 0}, "seeds=0: must be greater"),
+        ({"generations": 0}, "generations=0: must be greater"),
+        ({"population": -1}, "population=-1: must be greater"),
+        ({"population": 3}, "population=3: must be at least 4"),
+        ({"validation_seeds": 4}, "validation_seeds=4: must be greater"),
+        ({"validation_seeds": 9001}, "validation_seeds=9001: must be less"),
+        ({"densities": ()}, "densities=()"),
+        ({"budget": 3}, "budget=3: no such field"),
+    ],
+)
+def test_a_setup_that_cannot_be_is_refused(change: dict[str, object], complaint: str) -> None:
+    with pytest.raises(InputError) as caught:
+        TINY.replace(**change)
+    assert str(caught.value).startswith(complaint)
+
+
+def test_only_rows_of_the_table_and_a_directory_will_do(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"densities=8: must be among 6, 30"):
+        calibrate(TINY.replace(densities=(6, 8)), TARGET, Table(), tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match="must be a writable directory"):
+        calibrate(TINY, TARGET, Table(), tmp_path / "file")
+
+
+def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "shares.json"
+    write_json(path, {"a": 1})
+    with pytest.raises(TypeError):
+        write_json(path, {"a": object()})
+    monkeypatch.setattr(Path, "replace", _fail)
+    with pytest.raises(OSError, match="disk"):
+        write_json(path, {"a": 2})
+    assert json.loads(path.read_text()) == {"a": 1}
+
+
+def _fail(*_: object) -> None:
+    raise OSError("disk full")
+
+
+def test_long_portions_are_saved_on_the_way(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    saved: list[int] = []
+    clock: Iterator[float] = iter(range(0, 10_000, 3))
+    monkeypatch.setattr(calibration_games.time, "monotonic", lambda: float(next(clock)))
+    monkeypatch.setattr(
+        calibration_games, "write_json", lambda _, content: saved.append(len(content.get("shares", ())))
+    )
+    with pytest.raises(KeyboardInterrupt):
+        calibrate(TINY, TARGET, Table(stop_after=7), tmp_path)
+    assert saved == [0, 2, 4, 6, 7]
+
+
+def _shares(seed: int, mean: float) -> NDArray[np.float64]:
+    return np.random.default_rng(seed).normal(mean, 0.05, size=(20, 20))
+
+
+@pytest.mark.parametrize(("fitted", "beaten"), [(0.52, True), (0.60, False), (0.70, False)])
+def test_the_interval_tells_a_gain_from_luck(fitted: float, beaten: bool) -> None:
+    found = validate(_shares(1, 0.60), _shares(2, fitted), np.full(20, 50.0))
+    assert found["start_error"] - found["fitted_error"] == pytest.approx(found["gain"])
+    assert found["gain_low"] <= found["gain"] <= found["gain_high"]
+    assert found["gain"] == pytest.approx(100 * (0.60 - fitted), abs=1.0)
+    assert (found["gain_low"] > 0) is beaten
+
+
+def test_noise_that_both_points_share_does_not_widen_the_interval() -> None:
+    noise = _shares(1, 0.0)
+    found = validate(noise + 0.9, noise + 0.8, np.full(20, 50.0))
+    assert found["gain_low"] == pytest.approx(10)
+    assert found["gain_high"] == pytest.approx(10)
+
+
+@pytest.mark.parametrize("end", [0.0, 1.0])
+@pytest.mark.parametrize("name", list(START))
+def test_the_whole_range_of_each_parameter_can_be_played(name: str, end: float) -> None:
+    point = to_point([name], np.array([end]))
+    lowest = pytest.approx(START[name] / 2, rel=1e-3)
+    assert point[name] == lowest if end == 0 else point[name] > START[name]
+    game = learning_game(("attack", 50), point)
+    assert (game.size, game.swarms[0].policy, game.learning, game.duration) == (50, "attack", 3000, 0.1)
+    if name == "gamma":
+        assert f"ucb(gamma={point[name]})" in game.swarms[1].policy
+    else:
+        assert getattr(game.parameters, name) == point[name]
+
+
+def test_the_start_is_the_default_to_the_last_digit() -> None:
+    parameters, rule = texts(START)
+    assert parse_parameters(parameters) == parse_parameters("fitted")
+    assert rule == f"ucb(gamma={START['gamma']})"
+    again = to_point(list(START), to_place(START))
+    assert again == {name: float(f"{value:.4g}") for name, value in START.items()}
+
+
+def test_all_parameters_are_searched_together_even_from_the_edge(tmp_path: Path) -> None:
+    setup = Setup(densities=(6,), seeds=1, generations=2, validation_seeds=5)
+    trace = calibrate(setup, TARGET, Table(), tmp_path)
+    assert len(trace["start"]) == 16
+    assert all(0 <= point["push_share"] <= 0.5 for point in trace["generations"][1]["points"])

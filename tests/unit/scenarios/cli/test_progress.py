@@ -1,0 +1,92 @@
+"""How a sweep tells how far it is."""
+
+import json
+from collections.abc import Iterator
+
+import pytest
+
+from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.cli import progress
+from kswarms.scenarios.cli.progress import Count, clock, told, tracked
+from kswarms.scenarios.runs.run import Run, expand
+from kswarms.scenarios.runs.sweep import Failure, Outcome, Result
+
+RUNS = sorted(
+    expand([CATALOGUE["fig-6.1a"].replace(densities=(6, 30), seeds=2)]),
+    key=lambda run: run.effort,
+    reverse=True,
+)
+
+
+def ended(runs: list[Run] = RUNS) -> list[Result]:
+    outcomes = [Outcome([], [], {}), Failure("it broke"), Outcome([], [], {}), Outcome([], [], {})]
+    return [(run, outcome, 0.1) for run, outcome in zip(runs, outcomes, strict=True)]
+
+
+def test_time_left_is_told_by_work_not_by_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [100.0]
+    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+    count = Count(RUNS)
+    assert count.left == float("inf")
+    now[0] += 5.0
+    count.add(RUNS[0], failed=False)  # 30 of 30 + 30 + 6 + 6 robots
+    assert count.left == pytest.approx(5.0 * 42 / 30)
+    assert count.rate == pytest.approx(0.2)
+    count.worked = count.work + 1e-9  # added in another order
+    assert count.left == 0.0
+
+
+def test_lines_are_json_and_the_last_one_tells_all(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    now = [100.0]
+    monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+
+    def played() -> Iterator[Result]:
+        for result in ended():
+            now[0] += 0.6
+            yield result
+
+    assert [count.done for count in told(played(), RUNS, "json")] == [1, 2, 3, 4]
+    lines = [json.loads(line) for line in capsys.readouterr().err.splitlines()]
+    assert [(line["done"], line["failed"], line["total"]) for line in lines] == [
+        (1, 0, 4),
+        (3, 1, 4),
+        (4, 1, 4),
+    ]
+    assert lines[-1]["scenario"] == "fig-6.1a"
+    assert lines[-1]["seconds_left"] == 0
+    assert lines[-1]["runs_per_second"] == pytest.approx(4 / 2.4, abs=1e-3)
+
+
+def test_a_bar_names_the_scenario_and_counts_failures(capsys: pytest.CaptureFixture[str]) -> None:
+    assert [count.failed for count in told(ended(), RUNS, "bar")][-1] == 1
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert "\x1b" not in printed.err  # no terminal, no control characters
+    assert "fig-6.1a" in printed.err
+    assert "4/4 (1 failed) runs" in " ".join(printed.err.split())
+
+
+@pytest.mark.parametrize("kind", ["none", "bar", "json"])
+def test_nothing_is_told_of_nothing(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert list(told([], [], kind)) == []
+    assert capsys.readouterr().err == ""
+
+
+def test_steps_are_tracked_on_a_terminal_alone(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert list(tracked("abc", "spelling", 3)) == ["a", "b", "c"]
+    assert capsys.readouterr() == ("", "")
+    monkeypatch.setenv("FORCE_COLOR", "1")  # which rich takes for a terminal
+    assert list(tracked("abc", "spelling", 3)) == ["a", "b", "c"]
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert "spelling" in printed.err
+
+
+def test_times_are_told_as_people_say_them() -> None:
+    assert [clock(seconds) for seconds in (0.24, 59.9, 60, 3599.4, 3599.6, 8337)] == [
+        *("0.2 s", "59.9 s", "1:00 min", "59:59 min", "1:00 h", "2:19 h"),
+    ]

@@ -1,0 +1,216 @@
+"""Contributions: games with a robot and without it, compared robot by robot."""
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.learning.rewards import WLU, IndividualUtility
+from kswarms.model.description.game import Game, Swarm
+from kswarms.model.game_model import GameModel
+from kswarms.scenarios.contribution.games import (
+    FILE,
+    RECORD,
+    SCHEMA,
+    contributions,
+    prepare_table,
+    robots_of,
+    write_table,
+)
+from kswarms.scenarios.runs.run import digest
+from kswarms.scenarios.runs.sweep import play_all
+
+LEARNER = "inter-learner(reward='individual(delta=0.2)')"
+GAME = Game(
+    swarms=(Swarm(policy="attack", size=4), Swarm(policy=LEARNER, size=3)), learning=60.0, duration=60.0
+)
+
+
+def conflicts_counted(conflicts: Any, swarms: int) -> list[float]:
+    """Stand in for SUD in time-utility: a number that tells games and swarms apart."""
+    return [float(len(conflicts["phase"]) + swarm) for swarm in range(swarms)]
+
+
+def played(game: Game, seed: int) -> GameModel:
+    model = GameModel(game, seed, record=RECORD)
+    model.play()
+    return model
+
+
+# Who is meant.
+
+
+@pytest.mark.parametrize(
+    ("text", "robots"),
+    [(None, range(7)), ("S2", (4, 5, 6)), ("3", (3,)), (" 5, 0,5", (0, 5)), ("6,S1", (0, 1, 2, 3, 6))],
+)
+def test_robots_are_named_by_number_or_swarm(text: str | None, robots: Sequence[int]) -> None:
+    assert robots_of(GAME, text) == tuple(robots)
+
+
+@pytest.mark.parametrize("text", ["7", "-1", "S3", "S0", "s1", "1.0", "01", "all", "", "1,,2", "1-3"])
+def test_other_robots_are_refused(text: str) -> None:
+    with pytest.raises(InputError, match=r"^robots='.*': must be robots, 0 to 6, or swarms, S1, S2$"):
+        robots_of(GAME, text)
+
+
+# What is compared.
+
+
+@pytest.mark.parametrize("absent_from", ["learning", "game"])
+def test_the_games_are_those_that_anybody_can_play(absent_from: Any) -> None:
+    rows = contributions(GAME, [1, 5], [3, 4], absent_from, ("a", "b"), time_sud=conflicts_counted)
+    assert [(row["seed"], row["robot"]) for row in rows] == [(3, 1), (3, 5), (4, 1), (4, 5)]
+    for row in rows:
+        assert set(row) == set(SCHEMA.names)
+        assert (row["scenario"], row["condition"], row["n"], row["absent_from"]) == ("a", "b", 7, absent_from)
+        swarm = 1 if row["robot"] < 4 else 2
+        assert (row["swarm"], row["policy"]) == (swarm, "attack" if swarm == 1 else LEARNER)
+        lacking = GAME.replace(absent=(row["robot"],), absent_from=absent_from)
+        for game, ending in ((GAME, ""), (lacking, "_without")):
+            model = played(game, row["seed"])
+            assert row[f"run{ending}"] == digest(game, row["seed"])
+            assert row[f"sud{ending}"] == model.results()[swarm - 1]["sud"]
+            assert row[f"time_sud{ending}"] == conflicts_counted(model.tables()["conflicts"], 2)[swarm - 1]
+            assert row[f"duration{ending}"] == 60.0
+            for others, k in (("mates", swarm), ("opponents", 3 - swarm)):
+                seconds = {
+                    robot: (sum(t_a), t_p)
+                    for robot, t_a, t_p in (
+                        (robot.number, *robot.times())
+                        for robot in model.members[k - 1]
+                        if robot.number != row["robot"]
+                    )
+                }
+                assert row[f"{others}_t_a{ending}"] == pytest.approx(
+                    0.1 * sum(t_a for t_a, _ in seconds.values())
+                )
+                assert row[f"{others}_t_p{ending}"] == pytest.approx(
+                    0.1 * sum(t_p for _, t_p in seconds.values())
+                )
+
+
+def test_the_reward_is_the_robots_own_on_all_its_conflicts_of_the_measured_game() -> None:
+    rows = {row["robot"]: row for row in contributions(GAME, [0, 6], [1])}
+    table = played(GAME, 1).tables()["conflicts"]
+    conflicts = [dict(zip(table, values, strict=True)) for values in zip(*table.values(), strict=True)]
+    measured = [row for row in conflicts if row["phase"] == "game"]
+    for robot, swarm, reward in ((0, 1, WLU()), (6, 2, IndividualUtility(delta=0.2))):
+        own = [row for row in measured if row["robot"] == robot]
+        assert {row["opponent_swarm"] for row in own} == {1, 2}
+        expected = sum(
+            reward.of(
+                *(row["t_a"], row["t_p"], row["active"], 1 if row["action"] == "fight" else -1),
+                *(row["opponent_swarm"] != swarm, row["opponent_swarm"]),
+            )
+            for row in own
+        )
+        assert rows[robot]["reward"] == pytest.approx(expected)
+        assert rows[robot]["reward_time"] == pytest.approx(sum(row["t_a"] + row["t_p"] for row in own))
+        for others, name in ((swarm, "mates"), (3 - swarm, "opponents")):
+            met = sum(row["t_a"] for row in measured if row["opponent"] == robot and row["swarm"] == others)
+            assert rows[robot][f"{name}_t_a_met"] == pytest.approx(met) != 0.0
+
+
+def test_in_games_of_one_length_program_time_is_what_action_time_is_not() -> None:
+    for row in contributions(GAME, [2], [0, 1]):
+        for others in ("mates", "opponents"):
+            freed = row[f"{others}_t_a"] - row[f"{others}_t_a_without"]
+            assert row[f"{others}_t_p_without"] - row[f"{others}_t_p"] == pytest.approx(freed, abs=1e-6)
+
+
+def test_whether_a_robot_was_absent_from_the_learning_matters() -> None:
+    rows = [contributions(GAME, [1], [0, 1, 2], way) for way in ("learning", "game")]
+    assert [row["sud"] for row in rows[0]] == [row["sud"] for row in rows[1]]
+    assert [row["mates_t_a_without"] for row in rows[0]] != [row["mates_t_a_without"] for row in rows[1]]
+
+
+def test_without_a_measure_sud_in_time_utility_is_unknown() -> None:
+    (row,) = contributions(GAME, [1], [0])
+    assert row["time_sud"] != row["time_sud"]
+    assert row["sud"] == row["sud"]
+
+
+@pytest.mark.parametrize("robots", [[7], [-1]])
+def test_a_robot_of_no_game_has_no_contribution(robots: list[int]) -> None:
+    with pytest.raises(InputError, match=r"absent=.*: must be a robot of the game, 0 to 6"):
+        contributions(GAME, robots, [0])
+
+
+def test_only_of_a_game_with_all_its_robots() -> None:
+    with pytest.raises(InputError, match=r"absent=\(3,\): must be empty"):
+        contributions(GAME.replace(absent=(3,)), [1], [0])
+
+
+@pytest.mark.slow
+def test_one_worker_finds_what_two_find() -> None:
+    asked = partial(contributions, GAME, [0, 5], [0, 1], time_sud=conflicts_counted)
+    two = asked(play=lambda runs: play_all(runs, 2, RECORD))
+    assert asked() == two
+    assert asked() != contributions(GAME, [0, 5], [2, 3], time_sud=conflicts_counted)
+
+
+# The table.
+
+
+def rows(**changes: Any) -> list[dict[str, Any]]:
+    values = {"string": "x", "int64": 1, "double": 0.5}
+    plain: dict[str, Any] = {name: values[str(SCHEMA.field(name).type)] for name in SCHEMA.names}
+    return [{**plain, "robot": robot, **changes} for robot in (2, 0)]
+
+
+def test_a_table_keeps_what_is_of_other_games(tmp_path: Path) -> None:
+    prepare_table(tmp_path)
+    for part in (rows(), rows(n=26), rows(absent_from="y"), rows(seed=7)):
+        prepare_table(tmp_path)
+        path = write_table(tmp_path, part)
+    assert path == tmp_path / FILE
+    assert list(tmp_path.iterdir()) == [path]
+    table = pq.read_table(path)
+    assert table.schema.equals(SCHEMA)
+    found = [(row["absent_from"], row["n"], row["seed"], row["robot"]) for row in table.to_pylist()]
+    # The last one has replaced the first.
+    assert found == [
+        *(("x", 1, 7, 0), ("x", 1, 7, 2)),
+        *(("x", 26, 1, 0), ("x", 26, 1, 2)),
+        *(("y", 1, 1, 0), ("y", 1, 1, 2)),
+    ]
+
+
+def test_what_a_killed_process_left_is_removed_before_a_table_is_made(tmp_path: Path) -> None:
+    (tmp_path / f".unfinished-99999999-{FILE}").write_text("half a table")  # no process has this number
+    prepare_table(tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_file_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
+    for content in (b"mine", None):
+        if content is None:
+            pq.write_table(pa.table({"mine": [1]}), tmp_path / FILE)
+        else:
+            (tmp_path / FILE).write_bytes(content)
+        before = (tmp_path / FILE).read_bytes()
+        with pytest.raises(InputError, match=r"holds a contribution\.parquet that is no table of kswarms"):
+            prepare_table(tmp_path)
+        assert (tmp_path / FILE).read_bytes() == before
+
+
+def test_a_write_that_fails_leaves_the_table_as_it_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = write_table(tmp_path, rows())
+    before = path.read_bytes()
+
+    def fail(*_: object) -> None:
+        raise OSError("disk full")
+
+    monkeypatch.setattr(Path, "replace", fail)
+    with pytest.raises(OSError, match="disk full"):
+        write_table(tmp_path, rows(n=3))
+    assert path.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [path]

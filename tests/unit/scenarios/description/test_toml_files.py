@@ -1,0 +1,114 @@
+"""Scenarios from files: read as they were shown, or refused with the place of the mistake."""
+
+from pathlib import Path
+
+import pytest
+
+from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.catalogue import CATALOGUE, TABLES
+from kswarms.scenarios.catalogue.selecting import chosen
+from kswarms.scenarios.description.scenario import toml_of
+from kswarms.scenarios.description.toml_files import read_scenarios, write_json
+
+HUNT = """
+id = "hunt"
+title = "Two avoid one"
+densities = [9]
+seeds = 3
+
+[[conditions]]
+duration = 60
+swarms = [{policy = "avoid", share = 2}, {policy = "aggressive"}]
+"""
+
+
+def test_what_show_prints_is_read_again(tmp_path: Path) -> None:
+    file = tmp_path / "shown.toml"
+    for scenario in CATALOGUE.values():
+        file.write_text(scenario.to_toml())
+        assert read_scenarios(file) == [scenario]
+    several = [CATALOGUE[name] for name in TABLES["table-7.2"].scenarios]
+    file.write_text(toml_of(several))
+    assert read_scenarios(file) == several
+
+
+def test_a_file_says_no_more_than_what_differs_from_the_defaults(tmp_path: Path) -> None:
+    (tmp_path / "hunt.toml").write_text(HUNT)
+    (hunt,) = chosen([str(tmp_path / "hunt.toml")])
+    assert [rule.policy for rule in hunt.conditions[0].swarms] == ["avoid", "aggressive"]
+    assert hunt.conditions[0].sizes(9) == [6, 3]
+    assert hunt.conditions[0].layout == CATALOGUE["fig-6.1a"].conditions[0].layout
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "message"),
+    [
+        ("[9]", "[9", "id='FILE': must be a file of TOML (Unclosed array"),
+        ('"hunt"', '"Hunt me"', "hunt.toml: id='Hunt me': "),
+        ("[9]", "[10]", "hunt.toml: n=10: must be a multiple of 3"),
+        (
+            "duration = 60",
+            'duration = "long"',
+            "hunt.toml: conditions.0.duration='long': must be a valid num",
+        ),
+        ("duration", "length", "hunt.toml: conditions.0.length=60: no such field; there are name, swarms, "),
+        ('"avoid"', '"atack"', "hunt.toml: policy='atack': must be one of avoid"),
+        ("seeds = 3", "self = 1", "hunt.toml: self=1: no such field; there are id, title, "),
+        ("seeds = 3", '"a-b" = 1', "hunt.toml: a-b=1: no such field; there are id, title, "),
+        ("duration = 60", "self = 1", "hunt.toml: conditions.0.self=1: no such field; there are name, "),
+        ("share = 2", "self = 1", "hunt.toml: conditions.0.swarms.0.self=1: no such field; there are pol"),
+        ('title = "Two avoid one"', "", "hunt.toml: title=None: is required"),
+        ('id = "hunt"', "scenarios = []\nid = 'hunt'", "hunt.toml: scenarios=[]: must be some, and all"),
+        (HUNT, "scenarios = []", "hunt.toml: scenarios=[]: must be some, and all"),
+        (HUNT, "scenarios = [3]", "hunt.toml: scenarios.0=3: must be a table"),
+        (HUNT, "[[scenarios]]\nid = 3", "hunt.toml: scenarios.0: id=3: must be a valid string"),
+        ('"hunt"', f'"{"a" * 101}"', "hunt.toml: id='aaa"),
+        ("Two avoid one", "Two avoid\\u0000one", "hunt.toml: title='Two avoid\\x00one': "),
+        ("duration = 60", 'name = "a\\nb"', "hunt.toml: conditions.0.name='a\\nb': "),
+        ("seeds = 3", "seeds = true", "hunt.toml: seeds=True: must be a number"),
+        ("seeds = 3", "seeds = 1000001", "hunt.toml: seeds=1000001: must be less than"),
+        (HUNT, f"id = {'[' * 3000}", "id='FILE': must be a file of TOML (maximum recursion"),
+        (HUNT, "", "hunt.toml: id=None: is required"),
+    ],
+)
+def test_a_mistake_in_a_file_is_told_with_its_place(
+    before: str, after: str, message: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "hunt.toml"
+    assert before in HUNT
+    file.write_text(HUNT.replace(before, after))
+    with pytest.raises(InputError) as refusal:
+        read_scenarios(file)
+    assert str(refusal.value).startswith(message.replace("FILE", str(file)))
+    assert "\n" not in str(refusal.value)
+
+
+def test_bytes_that_are_no_text_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "noise.toml").write_bytes(b"\xff\xfe\x00")
+    for path in (tmp_path / "noise.toml", tmp_path / "absent.toml", tmp_path):
+        with pytest.raises(InputError, match="must be a file of TOML"):
+            read_scenarios(path)
+
+
+def test_the_mark_that_some_editors_put_first_is_no_mistake(tmp_path: Path) -> None:
+    file = tmp_path / "hunt.toml"
+    file.write_text(HUNT, encoding="utf-8-sig")
+    assert read_scenarios(file)[0].id == "hunt"
+
+
+def test_two_scenarios_of_one_id_must_be_the_same(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text(CATALOGUE["fig-6.1c"].to_toml())
+    assert chosen(["fig-6.1c", str(file), "fig-6.1a"]) == [CATALOGUE["fig-6.1c"], CATALOGUE["fig-6.1a"]]
+    file.write_text(CATALOGUE["fig-6.1c"].replace(seeds=3).to_toml())
+    with pytest.raises(InputError, match=r"id='fig-6.1c': must name one scenario, not two that differ"):
+        chosen(["fig-6.1c", str(file)])
+
+
+def test_json_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
+    path = tmp_path / "content.json"
+    write_json(path, {"a": 1})
+    before = path.read_bytes()
+    with pytest.raises(TypeError):
+        write_json(path, {"a": object()})
+    assert path.read_bytes() == before

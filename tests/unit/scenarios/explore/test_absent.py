@@ -1,0 +1,115 @@
+"""Games that some robots are absent from, in the page: each robot keeps its number, whatever row it has."""
+
+import math
+
+import pytest
+
+from kswarms.model.description.game import Game, Swarm
+from kswarms.model.game_model import GameModel
+from kswarms.scenarios.explore.session import Session
+from kswarms.scenarios.explore.views import curves_of, frame_of
+from kswarms.scenarios.runs.run import Run, digest
+from kswarms.scenarios.watch.conflicts import conflicts_of
+from kswarms.scenarios.watch.player import Player
+from kswarms.scenarios.watch.robot_view import look_into
+
+SWARMS = (Swarm(policy="attack", size=4), Swarm(policy="inter-learner", size=4))
+NEVER = Game(swarms=SWARMS, learning=40.0, duration=30.0, absent=(1, 4))
+LEAVING = NEVER.replace(absent=(4, 5, 6, 7), absent_from="game")
+
+
+def _run(game: Game, seed: int = 0) -> Run:
+    return Run(digest(game, seed), game, seed, (("mine", ""),))
+
+
+def test_robots_are_drawn_and_looked_into_by_their_numbers() -> None:
+    player = Player(NEVER, 0)
+    picture = player.picture()
+    assert picture.robots == (0, 2, 3, 5, 6, 7)
+    assert picture.swarm.tolist() == [0, 0, 0, 1, 1, 1]
+    assert player.look_into(1) is player.look_into(4) is player.look_into(8) is None
+    for number, robot in zip(picture.robots, player.model.robots, strict=True):
+        view = player.look_into(number)
+        assert view is not None
+        assert (view.robot, view.swarm, view.policy) == (number, robot.swarm + 1, robot.policy_name)
+    frame = frame_of(player, 1, 7, sectors=False, sensors=True)
+    assert frame["robots"][5] == 7
+    assert len(frame["x"]) == len(frame["swarm"]) == 6
+    assert len(frame["sensors"]) == 8
+    assert frame_of(player, 1, 4, sectors=False, sensors=True)["sensors"] is None
+
+
+def test_who_was_met_last_has_its_number() -> None:
+    model = GameModel(NEVER, 0, record="conflicts")
+    model.play()
+    table = model.tables()["conflicts"]
+    met = dict(zip(table["robot"], zip(table["opponent"], table["opponent_swarm"], strict=True), strict=True))
+    assert any(opponent > 1 for opponent, _ in met.values())  # whose row is another than its number
+    for robot, (opponent, swarm) in met.items():
+        view = look_into(model, robot)
+        assert view is not None
+        assert view.opponent == f"robot {opponent} of S{swarm}"
+
+
+def test_the_next_conflict_is_that_of_the_number_and_an_absent_robot_has_none() -> None:
+    player = Player(NEVER, 0)
+    player.to_next_conflict(4)
+    assert player.time == -40.0
+    player.to_next_conflict(7)
+    assert player.picture().in_action[player.picture().robots.index(7)]
+
+
+def test_who_leaves_is_watched_until_it_does() -> None:
+    player = Player(LEAVING, 0)
+    while player.time < 0:
+        player.to_next_conflict(6)
+    assert player.time == 0.0
+    assert player.look_into(6) is None
+    assert player.picture().robots == (0, 1, 2, 3)
+    player.seek(-10.0)
+    assert len(player.picture().robots) == 8
+
+
+def test_curves_of_those_who_left_end_when_they_do() -> None:
+    player = Player(LEAVING, 0)
+    player.seek(20.0)
+    charts = curves_of(player.history)
+    (learned,) = charts.pop("Share of learners whose best action is to fight")["series"]
+    times = [time for time, _ in learned["data"]]
+    assert (times[0], times[-1] < 0) == (-40.0, True)
+    assert all(chart["series"][0]["data"][-1][0] == 20.0 for chart in charts.values())
+
+
+def test_conflicts_are_told_by_number_with_what_that_robot_knew() -> None:
+    accounts = conflicts_of(_run(NEVER))
+    assert {account.robot for account in accounts} <= {0, 2, 3, 5, 6, 7}
+    learned = [each for each in accounts if each.robot == 7 and not math.isnan(each.reward)]
+    assert learned
+    assert all(each.known for each in learned)
+    assert [sum(arm.n for arm in each.known) for each in learned] == list(range(len(learned)))
+
+
+def test_a_session_of_such_a_run_plays_it_and_can_have_them_back() -> None:
+    session = Session(_run(NEVER, 3))
+    assert session.player.game == NEVER
+    assert session.chosen == 5  # the first learner who is there
+    session.change(session.form._replace(seed=4))
+    assert (session.error, session.player.game.absent) == ("", (1, 4))
+    session.change_absent("7, 0")
+    assert session.player.game.absent == (0, 7)
+    session.change_absent("9")
+    assert session.error == "absent=9: must be a robot of the game, 0 to 7"
+    session.change_absent("seven")
+    assert session.error.startswith("absent='seven': must be integers")
+    session.change_absent("")
+    assert (session.error, session.player.game.absent) == ("", ())
+
+
+@pytest.mark.parametrize("game", [NEVER, LEAVING])
+def test_a_game_watched_is_the_game_played(game: Game) -> None:
+    player = Player(game, 2)
+    while not player.ended:
+        player.advance(3.0)
+    straight = GameModel(game, 2)
+    straight.play()
+    assert player.model.results() == straight.results()

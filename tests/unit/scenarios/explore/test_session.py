@@ -1,0 +1,306 @@
+"""The page without the page: what its controls and buttons do."""
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.explore import session as session_module
+from kswarms.scenarios.explore.session import Session
+from kswarms.scenarios.explore.views import curves_of, frame_of, scene_of
+from kswarms.scenarios.runs.run import Run, digest
+from kswarms.scenarios.runs.sweep import RunError
+
+COWARD = """
+class Coward:
+    def __init__(self, setting):
+        self.flight = setting.actions[0]
+    def choose(self, opponent):
+        return self.flight
+"""
+
+
+@pytest.fixture
+def session() -> Session:
+    return Session("fig-6.1c")
+
+
+def test_a_session_begins_with_a_scenario(session: Session) -> None:
+    assert (session.source, session.title) == ("fig-6.1c", CATALOGUE["fig-6.1c"].title)
+    assert session.player.game == CATALOGUE["fig-6.1c"].game("", 20)
+    assert (session.player.time, session.playing, session.error, session.active) == (0.0, False, "", False)
+    with pytest.raises(InputError, match=r"id='fig-9'"):
+        Session("fig-9")
+
+
+def test_a_session_may_begin_with_a_run() -> None:
+    game = CATALOGUE["fig-7.10"].game("delta=0.1", 8)
+    run = Run(digest(game, 7), game, 7, (("fig-7.10", "delta=0.1"), ("other", "")))
+    session = Session(run)
+    assert (session.player.game, session.player.seed) == (game, 7)
+    assert session.source == f"run {run.digest}"
+    assert session.title == "fig-7.10 delta=0.1, other"
+    session.change(session.form._replace(seed=8))
+    assert (session.error, session.player.seed) == ("", 8)
+
+
+def test_a_table_or_a_file_offers_all_its_curves(tmp_path: Path) -> None:
+    assert list(Session("table-6.1").curves) == ["fig-6.4a", "fig-6.4b"]
+    file = tmp_path / "mine.toml"
+    file.write_text(CATALOGUE["fig-6.12"].replace(id="mine").to_toml())
+    session = Session(str(file))
+    assert list(session.curves) == [condition.name for condition in CATALOGUE["fig-6.12"].conditions]
+    session.choose_curve("random")
+    assert session.player.game.swarms[1].policy == "random"
+
+
+def test_a_mistake_is_told_in_one_line_and_leaves_the_game(session: Session) -> None:
+    session.player.advance(3.0)
+    kept = session.player
+    session.change(session.form._replace(parameters="fitted, friction=-1"))
+    assert session.error == "friction='-1': must be greater than or equal to 0"
+    assert session.player is kept
+    assert session.form.parameters == "fitted, friction=-1"
+    session.change_swarm(0, policy="atack")
+    assert session.error.startswith("friction=")  # still: both are wrong
+    session.change(session.form._replace(parameters="fitted"))
+    assert session.error.startswith("policy='atack': must be one of avoid")
+    session.load("fig-nine")
+    assert session.error.startswith("id='fig-nine'")
+    session.change_swarm(0, policy="aggressive")
+    assert session.error == ""
+    assert session.player is not kept
+    assert session.player.game.swarms[0].policy == "aggressive"
+
+
+def test_a_control_changes_the_game_and_starts_it_again(session: Session) -> None:
+    session.player.advance(5.0)
+    session.choose(19)
+    session.change(session.form._replace(n=6))
+    assert (session.player.game.size, session.player.time, session.chosen) == (6, 0.0, 5)
+    session.load("fig-6.4b")
+    assert session.chosen == 3  # the first that learns
+    assert session.player.time == -3000.0
+
+
+def test_shares_and_swarms_bring_an_n_that_suits_them(session: Session) -> None:
+    assert session.step_of_n() == 2
+    session.change_swarm(0, share=2)
+    assert (session.step_of_n(), session.form.n, session.error) == (3, 21, "")
+    session.change_swarms(3)
+    assert [swarm.size for swarm in session.player.game.swarms] == [10, 5, 5]
+    session.change_swarms(1)
+    assert [swarm.size for swarm in session.player.game.swarms] == [20]
+    session.change_swarm(0, share=0)
+    assert session.error == "share=0: must be greater than or equal to 1"
+
+
+def test_time_on_the_wall_is_time_of_the_game_by_the_speed(session: Session) -> None:
+    assert not session.tick(1.0)
+    session.play()
+    assert session.active
+    assert session.tick(0.1)
+    assert session.player.time == pytest.approx(1.0)
+    session.speed = 1
+    assert not session.tick(0.06)  # less than a period is owed
+    assert session.tick(0.06)
+    assert session.player.time == pytest.approx(1.1)
+    assert not session.tick(0.06)
+    assert session.tick(0.02)  # what is owed is not lost
+    session.play()
+    assert not session.tick(1.0)
+    session.step()
+    assert session.player.time == pytest.approx(1.3)
+
+
+def test_going_to_an_instant_needs_no_playing(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    session.go_to(50.0)
+    while session.active:
+        assert session.tick(0.01)
+    assert session.player.time == 50.0
+    session.go_to(20.0)
+    while session.active:
+        session.tick(0.01)
+    assert session.player.time == 20.0
+    monkeypatch.setattr(session_module, "_HASTE", 0.0)
+    session.go_to(30.0)
+    session.tick(0.01)  # in no time nothing is played, but the page can be drawn
+    assert (session.player.time, session.active) == (20.0, True)
+    monkeypatch.undo()
+    session.go_to(1e9)
+    while session.active:
+        session.tick(0.01)
+    assert session.player.ended == "time"
+    session.reset()
+    assert (session.player.time, session.player.ended) == (0.0, "")
+
+
+@pytest.mark.parametrize("time", [math.nan, math.inf, -math.inf])
+def test_an_instant_that_is_none_is_refused_until_another_is_asked_for(time: float, session: Session) -> None:
+    session.player.advance(3.0)
+    for instant in (1.0, 5.0):
+        session.go_to(time)
+        assert session.error == f"t={time}: must be a finite number of seconds"
+        assert not session.active
+        session.go_to(instant)
+        assert session.error == ""
+        while session.active:
+            session.tick(0.01)
+        assert session.player.time == instant
+
+
+def test_a_game_that_is_over_stands_still(session: Session) -> None:
+    session.change(session.form._replace(duration=2.0))
+    session.play()
+    session.tick(1.0)
+    assert session.player.ended
+    assert not session.active
+    assert not session.tick(1.0)
+
+
+def test_the_next_conflict_is_that_of_the_chosen_robot(session: Session) -> None:
+    session.play()
+    session.choose(4)
+    session.next_conflict()
+    assert not session.playing
+    assert session.player.picture().in_action[4]
+
+
+def test_a_session_that_is_closed_plays_no_more(session: Session) -> None:
+    session.play()
+    session.close()
+    assert not session.tick(1.0)
+
+
+def test_the_browser_is_given_plain_data(session: Session) -> None:
+    player = session.player
+    scene = scene_of(player)
+    assert len(scene["bases"]) == len(scene["colours"]) == 2
+    frame = frame_of(player, 3, 5, sectors=False, sensors=True)
+    assert (frame["number"], frame["time"], frame["pucks"], frame["supply"]) == (3, 0.0, (0, 0), [-1, -1])
+    assert (frame["swarm"], frame["robots"]) == ([0] * 10 + [1] * 10, tuple(range(20)))
+    assert len(frame["sensors"]) == 8
+    positions = player.picture().positions
+    assert frame["x"] == pytest.approx(positions[:, 0], abs=1e-4)
+    assert frame_of(player, 3, 5, sectors=True, sensors=False)["sensors"] is None
+    charts = curves_of(player.history)
+    assert [len(chart["series"]) for chart in charts.values()] == [2, 2, 4]
+
+
+def test_what_is_learned_has_a_chart_with_a_line_for_each_pair_of_swarms() -> None:
+    session = Session("fig-6.8")
+    charts = curves_of(session.player.history)
+    learned = charts["Share of learners whose best action is to fight"]
+    assert [line["name"] for line in learned["series"]] == ["S2 against S1", "S2 within"]
+    assert learned["yAxis"]["max"] == 1.0
+
+
+def test_once_the_game_has_begun_only_what_is_learned_is_shown_from_before_it() -> None:
+    session = Session("fig-6.4b")
+    session.change(session.form._replace(n=6, learning=20.0))
+
+    def first_times() -> dict[str, float]:
+        charts = curves_of(session.player.history)
+        return {name: chart["series"][0]["data"][0][0] for name, chart in charts.items()}
+
+    assert set(first_times().values()) == {-20.0}
+    session.player.seek(30.0)
+    first = first_times()
+    assert first.pop("Share of learners whose best action is to fight") == -20.0
+    assert set(first.values()) == {0.0}
+
+
+def test_a_chart_of_no_time_yet_begins_where_its_game_does() -> None:
+    session = Session("fig-6.4b")
+
+    def axes() -> set[tuple[float, float]]:
+        axes = (chart["xAxis"] for chart in curves_of(session.player.history).values())
+        return {(axis["min"], axis["max"]) for axis in axes}
+
+    assert axes() == {(-3000.0, -2990.0)}
+    session.player.advance(60.0)
+    assert axes() == {(-3000.0, -2940.0)}
+
+
+@pytest.mark.parametrize("failure", [ZeroDivisionError("by zero"), SystemExit("enough")])
+def test_a_game_that_fails_stops_and_says_why(
+    failure: BaseException, session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def choose(_opponent: int) -> None:
+        raise failure
+
+    for robot in session.player.model.robots:
+        monkeypatch.setattr(robot.policy, "choose", choose)
+    session.play()
+    while session.active:
+        session.tick(1.0)
+    assert session.error == f"the game failed: {type(failure).__name__}: {failure}"
+    session.go_to(500.0)
+    assert not session.tick(1.0)  # a game that failed is over
+    session.reset()  # with new robots
+    assert (session.error, session.player.time) == ("", 0.0)
+    session.step()
+    assert session.player.time == 0.1
+
+
+def test_a_text_that_cannot_be_read_does_not_stop_the_other_controls(session: Session) -> None:
+    session.change_swarm(0, policy="learner(rule=")
+    session.change_learning("reward", delta=0.2)
+    assert session.error.startswith("policy='learner(rule=': must be name or name(")
+    session.change(session.form._replace(parameters="fited"))
+    session.change_parameter("friction", 0.2)
+    assert session.error.startswith("parameters='fited': must begin with one of")
+
+
+def test_a_policy_of_a_file_of_ones_own_plays(session: Session, tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text(COWARD)
+    session.change_swarm(1, policy=f"{file}:Coward")
+    assert session.error == ""
+    session.player.seek(60.0)
+    assert {account.action for account in session.player.conflicts} == {"flight"}
+    file.write_text("class Coward:\n    pass\n")
+    session.change_swarm(1, policy=f"{file}:Cowerd")
+    assert "has no class Cowerd" in session.error
+
+
+@pytest.mark.parametrize("back", [Session.reset, lambda session: session.go_to(1.0)])
+def test_a_game_that_can_no_longer_be_wound_back_stays_where_it_is_until_it_can(
+    back: Callable[[Session], None], session: Session, tmp_path: Path
+) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text(COWARD)
+    session.change_swarm(1, policy=f"{file}:Coward")
+    session.player.advance(3.0)
+    file.write_text("half a th")
+    back(session)
+    assert session.error.startswith(f"policy='{file}:Coward': importing mine.py raises SyntaxError")
+    session.tick(0.0)
+    assert (session.player.time, session.active) == (3.0, False)
+    session.step()
+    assert session.player.time == pytest.approx(3.1)
+    file.write_text(COWARD)
+    back(session)
+    assert session.error == ""
+    while session.active:
+        session.tick(0.0)
+    assert session.player.time <= 1.0
+
+
+def test_winding_back_does_not_forget_a_mistake_of_the_controls(session: Session) -> None:
+    session.player.advance(3.0)
+    session.change_swarm(0, policy="atack")
+    session.reset()
+    assert session.player.time == 0.0
+    assert session.error.startswith("policy='atack'")
+
+
+def test_a_policy_that_fails_before_its_game_is_told_as_a_run_that_failed(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(session_module, "Player", lambda *_: 1 // 0)
+    with pytest.raises(RunError, match=r"the game of fig-6\.1c failed: ZeroDivisionError: integer"):
+        Session("fig-6.1c")

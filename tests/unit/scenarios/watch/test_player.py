@@ -1,0 +1,193 @@
+"""A game that is stepped, wound back and looked into is the game that is played in one go."""
+
+import gc
+import weakref
+from typing import Any
+
+import numpy as np
+import pytest
+
+from kswarms.agents.actions import TOWARDS
+from kswarms.agents.robot.state import ACTION
+from kswarms.model.description.game import Game, Swarm
+from kswarms.model.game_model import GameModel
+from kswarms.scenarios.watch import player as player_module
+from kswarms.scenarios.watch.player import Player
+from kswarms.scenarios.watch.robot_view import RobotView
+from kswarms.scenarios.watch.robot_view import look_into as look
+
+
+def _game(policies: str = "avoid,attack", n: int = 10, **rest: Any) -> Game:
+    swarms = tuple(Swarm(policy=policy, size=n // 2) for policy in policies.split(","))
+    return Game(swarms=swarms, **{"duration": 40.0, **rest})
+
+
+def look_into(model: GameModel, robot: int) -> RobotView:
+    view = look(model, robot)
+    assert view is not None
+    return view
+
+
+LEARNING = _game("attack,inter-learner", learning=60.0)
+
+
+def _state(player: Player) -> tuple[Any, ...]:
+    return player.time, player.picture().positions.tolist(), player.model.results()
+
+
+def test_a_game_watched_step_by_step_is_the_game_played_in_one_go() -> None:
+    player = Player(LEARNING, 5)
+    while not player.ended:
+        player.advance(0.7)
+    straight = GameModel(LEARNING, seed=5)
+    straight.play()
+    assert player.model.results() == straight.results()
+    np.testing.assert_array_equal(player.picture().positions, straight.fleet.positions)
+    assert player.time == 40.0
+
+
+def test_time_is_negative_while_the_learners_learn() -> None:
+    player = Player(LEARNING, 0)
+    assert (player.time, player.begin) == (-60.0, 60.0)
+    player.advance(59.9)
+    assert player.time == pytest.approx(-0.1)
+    assert player.model.phase == "learning"
+    player.advance(0.2)
+    assert player.time == pytest.approx(0.1)
+    assert player.model.phase == "game"
+    assert Player(_game(), 0).time == 0.0
+
+
+def test_winding_back_shows_what_was_there() -> None:
+    player = Player(LEARNING, 1)
+    player.seek(-20.0)
+    before = _state(player)
+    learned = look_into(player.model, 7).bandits
+    player.seek(15.0)
+    assert player.time == 15.0
+    assert _state(player) != before
+    player.seek(-20.0)
+    assert _state(player) == before
+    assert look_into(player.model, 7).bandits == learned
+    assert player.history[0].time == -60.0
+
+
+def test_a_step_is_at_least_one_period_and_the_end_is_the_end() -> None:
+    player = Player(_game(), 0)
+    player.advance(0.0)
+    assert player.time == 0.1
+    player.seek(1e9)
+    assert (player.ended, player.time) == ("time", 40.0)
+    player.advance(1.0)
+    assert player.time == 40.0
+
+
+def test_the_next_conflict_of_a_robot_is_where_it_begins() -> None:
+    player = Player(LEARNING, 2)
+    for _ in range(3):
+        before = player.time
+        player.to_next_conflict(6)
+        assert player.time > before
+        assert player.picture().in_action[6] or player.ended
+    # Its start is told when it has closed: it begins at the instant before this step.
+    start = player.time - 0.1
+    player.to_next_conflict(6)
+    newest = player.conflicts_of(6, 1)[0]
+    assert newest.start - player.begin == pytest.approx(start)
+    player.seek(-0.05)
+    player.to_next_conflict(6)  # although the counts begin anew with the measured game
+    assert player.time > 0.0
+
+
+def test_conflicts_are_told_newest_first_of_one_robot_or_of_all() -> None:
+    player = Player(_game(n=16), 0)
+    player.seek(40.0)
+    everybody = player.conflicts_of(None, 1000)
+    assert len(everybody) == len(player.conflicts) > 20
+    own = player.conflicts_of(3, 5)
+    assert [account.start for account in own] == sorted((a.start for a in own), reverse=True)
+    assert {account.robot for account in own} == {3}
+    assert own == [account for account in everybody if account.robot == 3][:5]
+
+
+def test_a_long_history_is_thinned_and_keeps_its_first_sample(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(player_module, "MOST_SAMPLES", 6)
+    player = Player(_game(duration=100.0), 0)
+    player.seek(100.0)
+    times = [sample.time for sample in player.history]
+    assert len(times) <= 6
+    assert times[0] == 0.0
+    assert times == sorted(set(times))
+    assert times[-1] == 100.0
+
+
+def test_playing_on_does_not_change_a_history_that_was_given() -> None:
+    player = Player(LEARNING, 0)
+    given = player.history
+    before = list(given)
+    player.advance(10.0)
+    assert given == before
+    assert player.history[: len(before)] == before
+    assert len(player.history) > len(before)
+
+
+def test_a_sample_has_the_curves_of_every_swarm() -> None:
+    player = Player(LEARNING, 3)
+    assert player.history[0].inter == (0.0, 0.0)
+    player.seek(40.0)
+    last = player.history[-1]
+    results = player.model.results()
+    assert last.pucks == tuple(row["pucks"] for row in results)
+    assert last.sud == tuple(row["sud"] for row in results)
+    for k, row in enumerate(results):
+        lived = row["t_a_intra"] + row["t_a_inter"] + row["t_p"]
+        assert last.intra[k] == pytest.approx(row["t_a_intra"] / lived)
+        assert last.inter[k] == pytest.approx(row["t_a_inter"] / lived)
+    learners = [robot.policy for robot in player.model.members[1]]
+    fighters = sum(learner.learned(0).direction == TOWARDS for learner in learners)  # type: ignore[attr-defined]
+    assert last.fights == {(2, 1): fighters / len(learners)}
+
+
+def test_a_game_let_go_is_freed() -> None:
+    player = Player(_game(), 0)
+    player.advance(1.0)
+    first = weakref.ref(player.model)
+    player.seek(0.0)
+    gc.collect()
+    assert first() is None
+    second = weakref.ref(player.model)
+    player.close()
+    del player
+    gc.collect()
+    assert second() is None
+
+
+def test_a_robot_is_seen_as_it_is() -> None:
+    player = Player(LEARNING, 4)
+    player.seek(-10.0)
+    model = player.model
+    for index in range(10):
+        view = look_into(model, index)
+        robot = model.robots[index]
+        assert (view.robot, view.swarm, view.pucks) == (index, robot.swarm + 1, robot.pucks)
+        assert sum(view.t_a) + view.t_p == pytest.approx(50.0)
+        assert (view.doing == "in conflict") == (model.fleet.phase[index] == ACTION)
+        assert len(view.sensors) == 8
+        limit = model.game.parameters.active_range
+        assert all(sensor.active == (sensor.free <= limit) for sensor in view.sensors)
+        assert all(sensor.free <= model.game.body_preset.sensor_range for sensor in view.sensors)
+    learner, fighter = look_into(model, 7), look_into(model, 0)
+    assert (list(learner.bandits), learner.learning, learner.rule) == ([1], True, "UCB(gamma=0.1211)")
+    assert [arm.action for arm in learner.bandits[1]] == ["flight", "fight"]
+    assert (fighter.bandits, fighter.learning, fighter.rule) == ({}, False, "")
+    player.seek(1.0)
+    assert not look_into(player.model, 7).learning
+
+
+def test_the_sensor_ahead_measures_the_gap_to_a_robot_ahead(scene: Any) -> None:
+    model = scene([(0.0, 0.0, 0.0)], [(0.4, 0.0, 0.0)])
+    view = look_into(model, 0)
+    assert view.sensors[0].free == pytest.approx(0.4 - 2 * 0.085)
+    assert view.sensors[0].active
+    assert view.sensors[4].free == pytest.approx(0.667)
+    assert view.opponent == ""
