@@ -1,7 +1,7 @@
 """Competing swarms of foraging robots that learn whether to fight or to flee.
 
-The names below are the public interface; docs/api.md says how it may change. Each is loaded on first use, so
-that ``import kswarms`` is fast.
+The names below are the public interface; docs/api.md describes them and how they may change. Each is loaded
+on first use, so that ``import kswarms`` is fast.
 """
 
 from importlib import import_module
@@ -15,18 +15,26 @@ if TYPE_CHECKING:
     from kswarms.agents.learning.selection_rules import Rule
     from kswarms.agents.policies.interface import LearningPolicy, Policy, Setting
     from kswarms.agents.policies.learner import Learner
+    from kswarms.agents.policies.registry import make_policy
     from kswarms.agents.robot.body import Body
     from kswarms.agents.streams import Purpose
+    from kswarms.analysis.figures.files import save
+    from kswarms.analysis.figures.over_n import figure_of
+    from kswarms.analysis.findings import FINDINGS, Finding, judge, judge_all
+    from kswarms.analysis.results.records import read_conflicts
+    from kswarms.analysis.results.runs import Results, read_policies, read_results, read_runs
     from kswarms.model.description.game import Game, Swarm
-    from kswarms.model.description.parameters import Parameters
+    from kswarms.model.description.parameters import PRESETS, Parameters
     from kswarms.model.foraging import ForagingModel
     from kswarms.model.game_model import GameModel
     from kswarms.scenarios.catalogue import CATALOGUE
     from kswarms.scenarios.description.scenario import Condition, Scenario, SwarmRule
+    from kswarms.scenarios.description.toml_files import read_scenarios
+    from kswarms.scenarios.study.study import Study
 
 __version__ = "0.2.0"
 
-_HOMES: Final = {
+_MODULES: Final = {
     "agents.actions": ("AWAY", "TOWARDS", "Action"),
     "agents.common.errors": ("InputError",),
     "agents.learning.bandit": ("Bandit",),
@@ -34,25 +42,36 @@ _HOMES: Final = {
     "agents.learning.selection_rules": ("Rule",),
     "agents.policies.interface": ("LearningPolicy", "Policy", "Setting"),
     "agents.policies.learner": ("Learner",),
+    "agents.policies.registry": ("make_policy",),
     "agents.robot.body": ("Body",),
     "agents.streams": ("Purpose",),
+    "analysis.figures.files": ("save",),
+    "analysis.figures.over_n": ("figure_of",),
+    "analysis.findings": ("FINDINGS", "Finding", "judge", "judge_all"),
+    "analysis.results.records": ("read_conflicts",),
+    "analysis.results.runs": ("Results", "read_policies", "read_results", "read_runs"),
     "model.description.game": ("Game", "Swarm"),
-    "model.description.parameters": ("Parameters",),
+    "model.description.parameters": ("PRESETS", "Parameters"),
     "model.foraging": ("ForagingModel",),
     "model.game_model": ("GameModel",),
     "scenarios.catalogue": ("CATALOGUE",),
     "scenarios.description.scenario": ("Condition", "Scenario", "SwarmRule"),
+    "scenarios.description.toml_files": ("read_scenarios",),
+    "scenarios.study.study": ("Study",),
 }
-_HOME_OF: Final = {name: f"kswarms.{home}" for home, names in _HOMES.items() for name in names}
+_MODULE_OF: Final = {name: f"kswarms.{module}" for module, names in _MODULES.items() for name in names}
 
 __all__ = [
     "AWAY",
     "CATALOGUE",
+    "FINDINGS",
+    "PRESETS",
     "TOWARDS",
     "Action",
     "Bandit",
     "Body",
     "Condition",
+    "Finding",
     "ForagingModel",
     "Game",
     "GameModel",
@@ -62,18 +81,31 @@ __all__ = [
     "Parameters",
     "Policy",
     "Purpose",
+    "Results",
     "Reward",
     "Rule",
     "Scenario",
     "Setting",
+    "Study",
     "Swarm",
     "SwarmRule",
+    "figure_of",
+    "judge",
+    "judge_all",
+    "make_policy",
+    "read_conflicts",
+    "read_policies",
+    "read_results",
+    "read_runs",
+    "read_scenarios",
+    "save",
 ]
 
 
 def __getattr__(name: str) -> Any:
-    if name in _HOME_OF:
-        value = globals()[name] = getattr(import_module(_HOME_OF[name]), name)
+    """Import a public name on first use (PEP 562)."""
+    if name in _MODULE_OF:
+        value = globals()[name] = getattr(import_module(_MODULE_OF[name]), name)
         return value
     raise AttributeError(f"module 'kswarms' has no attribute {name!r}")
 

@@ -1,0 +1,106 @@
+"""The packages that are built: their contents, and a game played with the installed wheel."""
+
+import os
+import stat
+import subprocess
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+
+import pytest
+
+import kswarms
+
+ROOT = Path(__file__).parents[2]
+
+USER_MODULES = {
+    "model.py": "raise ImportError('a module of the user')\n",
+    "scenarios.py": "raise ImportError('a module of the user')\n",
+    "analysis.py": "raise ImportError('a module of the user')\n",
+    "agents.py": (
+        "class Mine:\n"
+        "    def __init__(self, setting):\n        self.action = setting.actions[0]\n"
+        "    def choose(self, opponent):\n        return self.action\n"
+    ),
+    "play.py": (
+        "import kswarms\n"
+        "print(kswarms.__file__)\n"
+        "model = kswarms.ForagingModel(n=4, policies='attack,agents.py:Mine', duration=2)\n"
+        "model.play()\n"
+        "print(model.ended, [row['policy'] for row in model.results()])\n"
+    ),
+}
+
+
+def run(*command: str | Path, cwd: Path, **environment: str) -> str:
+    done = subprocess.run(
+        [sys.executable, *command],
+        cwd=cwd,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def build(tree: Path, kind: str, directory: Path) -> Path:
+    run("-m", "hatchling", "build", "-t", kind, "-d", directory, cwd=tree)
+    (package,) = directory.iterdir()
+    return package
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return build(ROOT, "wheel", tmp_path_factory.mktemp("wheel"))
+
+
+@pytest.mark.slow
+def test_the_wheel_holds_kswarms_alone_as_files(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        entries = archive.infolist()
+    metadata = f"kswarms-{kswarms.__version__}.dist-info"
+    assert {entry.filename.split("/")[0] for entry in entries} == {"kswarms", metadata}
+    assert not [entry.filename for entry in entries if stat.S_ISLNK(entry.external_attr >> 16)]
+    packed = {entry.filename for entry in entries}
+    # Every file of the packages, data included: tables, findings, templates, components of the page.
+    tracked = subprocess.run(
+        ["git", "ls-files", "agents", "model", "scenarios", "analysis"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.split()
+    assert {".py", ".csv", ".toml", ".html", ".css", ".vue"} == {Path(name).suffix for name in tracked}
+    assert {f"kswarms/{name}" for name in tracked} | {"kswarms/__init__.py", "kswarms/py.typed"} == {
+        name for name in packed if not name.startswith(metadata)
+    }
+
+
+@pytest.mark.slow
+def test_the_source_distribution_builds_the_same_wheel(wheel: Path, tmp_path: Path) -> None:
+    with tarfile.open(build(ROOT, "sdist", tmp_path / "sdist")) as archive:
+        archive.extractall(tmp_path, filter="data")
+    (tree,) = tmp_path.glob("kswarms-*")
+    assert build(tree, "wheel", tmp_path / "wheel").read_bytes() == wheel.read_bytes()
+
+
+@pytest.mark.slow
+def test_the_wheel_plays_beside_modules_of_the_user_named_like_its_packages(
+    wheel: Path, tmp_path: Path
+) -> None:
+    installed, folder = tmp_path / "installed", tmp_path / "folder"
+    folder.mkdir()
+    for name, code in USER_MODULES.items():
+        (folder / name).write_text(code)
+    quiet = ("--quiet", "--disable-pip-version-check", "--no-deps", "--no-index")
+    run("-m", "pip", "install", *quiet, "--target", installed, wheel, cwd=tmp_path)
+    # Compiling without optimization saves half of the time.
+    environment = {"PYTHONPATH": str(installed), "NUMBA_OPT": "0"}
+    where, played = run("play.py", cwd=folder, **environment).splitlines()
+    assert where == str(installed / "kswarms" / "__init__.py")
+    assert played == "time ['attack', 'agents.py:Mine']"
+    listing = run("-P", installed / "bin" / "kswarms", "list", cwd=folder, **environment)
+    assert "fig-6.1a" in listing
