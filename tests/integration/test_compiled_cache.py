@@ -13,7 +13,8 @@ def test_machine_code_older_than_the_sources_is_dropped_on_import(tmp_path: Path
     environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
 
     def cached_after_import() -> dict[Path, float]:
-        subprocess.run([sys.executable, "-c", "import kswarms.agents.robot.sensing"], env=environment, check=True)
+        code = "import kswarms.agents.robot.sensing"
+        subprocess.run([sys.executable, "-c", code], env=environment, check=True)
         return {path: path.stat().st_mtime for path in tmp_path.rglob("*.nb[ic]")}
 
     first = cached_after_import()
