@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 from mesa import DataCollector
 
 from kswarms.agents.actions import TOWARDS
+from kswarms.agents.common.columns import RECORDED_TABLES, names
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.registry import describe
 from kswarms.agents.policies.saved import best_actions, save
@@ -16,15 +17,12 @@ from kswarms.agents.theory.swarms import swarm_utility_difference
 if TYPE_CHECKING:
     from kswarms.model.game_model import GameModel
 
-RECORDS: Final = ("model", "agents", "conflicts", "robots", "trajectory")
+RECORDS: Final = ("model", "agents", *RECORDED_TABLES)
 """What can be recorded: samples of the model, of the agents; tables of conflicts, robots, positions."""
 
 Table = dict[str, list[Any]]
 
-_CONFLICT_COLUMNS: Final = (
-    *("phase", "robot", "swarm", "opponent", "opponent_swarm", "start", "x", "y"),
-    *("action", "t_a", "t_p", "active", "seen", "reward", "q"),
-)
+_CONFLICT_COLUMNS: Final = names("conflicts")[1:]  # without the run
 
 
 def parse_record(text: str) -> frozenset[str]:
@@ -35,11 +33,11 @@ def parse_record(text: str) -> frozenset[str]:
     InputError
         If there is an unknown name in it.
     """
-    names = frozenset(name.strip() for name in text.split(",") if name.strip())
-    for name in sorted(names):
+    record = frozenset(name.strip() for name in text.split(",") if name.strip())
+    for name in sorted(record):
         if name not in RECORDS:
             raise InputError("record", name, f"must be one of {', '.join(RECORDS)}")
-    return names
+    return record
 
 
 def make_collector(swarms: int, record: frozenset[str]) -> DataCollector:
@@ -120,14 +118,13 @@ def robots_table(model: "GameModel") -> Table:
 
 def trajectory_table(model: "GameModel") -> Table:
     """Return where every robot was at every sample."""
-    names = ("time", "robot", "x", "y", "heading", "state", "puck")
-    table: Table = {name: [] for name in names}
+    table: Table = {name: [] for name in names("trajectory")[1:]}
     reporters = list(model.datacollector.agent_reporters)
     for step, rows in model.datacollector._agent_records.items():
         for row in rows:
             seen = dict(zip(reporters, row[2:], strict=True))
             seen |= {"time": model.sample_times[step], "robot": row[1] - 1}
-            for name in names:
+            for name in table:
                 table[name].append(seen[name])
     return table
 

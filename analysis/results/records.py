@@ -7,16 +7,14 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from kswarms.agents.common.columns import names
 from kswarms.agents.common.errors import InputError
 
 CONFLICTS_FILE = "conflicts.parquet"
-CONFLICTS_COLUMNS = (
-    *("run", "phase", "robot", "swarm", "opponent", "opponent_swarm", "start", "x", "y"),
-    *("action", "t_a", "t_p", "active", "reward", "q"),
-)
+CONFLICTS_COLUMNS = tuple(name for name in names("conflicts") if name != "seen")
 
 ROBOTS_FILE = "robots.parquet"
-ROBOTS_COLUMNS = ("run", "robot", "swarm", "policy", "pucks", "t_a", "t_p", "arms")
+ROBOTS_COLUMNS = names("robots")
 
 
 def recorded_runs(directory: Path, name: str) -> set[str]:

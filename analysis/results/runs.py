@@ -7,30 +7,18 @@ from pathlib import Path
 import pandas as pd
 from pandas.api.types import is_numeric_dtype
 
+from kswarms.agents.common.columns import names
 from kswarms.agents.common.errors import InputError
 
 RUNS_FILE = "runs.parquet"
 
-RUNS_TEXT = ("run", "scenario", "condition", "policy", "ended")
-RUNS_NUMBERS = (
-    "n",
-    "seed",
-    "swarm",
-    "size",
-    "pucks",
-    "sud",
-    "t_a_intra",
-    "t_a_inter",
-    "t_p",
-    "conflicts_intra",
-    "conflicts_inter",
-    "duration",
-)
+RUNS_TEXT = names("runs", "text")
+RUNS_NUMBERS = names("runs", "integer", "real")
 
 POLICIES_FILE = "policies.parquet"
 
-POLICIES_TEXT = ("run", "scenario", "condition", "action")
-POLICIES_NUMBERS = ("n", "seed", "swarm", "opponent", "share", "attack_share")
+POLICIES_TEXT = names("policies", "text")
+POLICIES_NUMBERS = names("policies", "integer", "real")
 
 # What pandas and Arrow raise on damaged bytes: mostly OSError or ValueError, the others where the
 # description of the columns is damaged.

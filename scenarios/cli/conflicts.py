@@ -37,6 +37,7 @@ def conflicts(
     rows = [
         told(account, found.game.learning)
         for account in conflicts_of(found)
-        if (robot is None or account.robot == robot) and first <= account.start - found.game.learning <= last
+        if (robot is None or account.row["robot"] == robot)
+        and first <= account.row["start"] - found.game.learning <= last
     ]
     print_columns([TOLD, *rows], left=range(len(TOLD)))

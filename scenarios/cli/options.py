@@ -85,7 +85,7 @@ def asked(what: str | None, run: str) -> str | Run:
         return what or FIRST_SCENARIO
     if what is None:
         raise InputError("run", run, "needs the directory of results that has it")
-    from kswarms.scenarios.study.find_run import recorded_run
+    from kswarms.scenarios.watch.recorded_run import recorded_run
 
     return recorded_run(Path(what), run)
 

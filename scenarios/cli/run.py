@@ -8,6 +8,7 @@ from typing import Annotated, Final
 
 import typer
 
+from kswarms.agents.common.columns import RECORDED_TABLES
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selecting import chosen, integers, planned, words
@@ -16,7 +17,6 @@ from kswarms.scenarios.cli.options import ids as ids_to_complete
 from kswarms.scenarios.cli.printing import print_table
 from kswarms.scenarios.cli.progress import KINDS, check_kind, told
 from kswarms.scenarios.description.scenario import Scenario
-from kswarms.scenarios.runs.sweep import RECORDS
 
 _NEXT: Final = {
     "report": "all results in one HTML file",
@@ -60,7 +60,7 @@ def run(
         typer.Option(parser=directory, metavar="DIR", help="Where the results go, and are gone on from."),
     ] = Path("results"),
     record: Annotated[
-        str, typer.Option(metavar="NAME,...", help=f"More tables to write: {', '.join(RECORDS)}.")
+        str, typer.Option(metavar="NAME,...", help=f"More tables to write: {', '.join(RECORDED_TABLES)}.")
     ] = "",
     no_figures: Annotated[bool, typer.Option("--no-figures", help="Write the tables alone.")] = False,
     progress: Annotated[
@@ -82,8 +82,8 @@ def run(
     workers = processes(jobs)
     records = words(record)
     for name in records:
-        if name not in RECORDS:
-            raise InputError("record", name, f"must be among {', '.join(RECORDS)}")
+        if name not in RECORDED_TABLES:
+            raise InputError("record", name, f"must be among {', '.join(RECORDED_TABLES)}")
     kind = "none" if quiet else check_kind(progress)
     if left_out:
         typer.echo(f"kswarms: none of the densities suits {', '.join(left_out)}: left out", err=True)

@@ -17,6 +17,7 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from kswarms.agents.common.atomic_files import remove_unfinished, whole
+from kswarms.agents.common.columns import TABLES
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.learning.rewards import WLU, Reward
 from kswarms.agents.policies.interface import Setting
@@ -28,24 +29,11 @@ from kswarms.scenarios.catalogue.selecting import words
 from kswarms.scenarios.description.toml_files import make_directory
 from kswarms.scenarios.runs.run import Run, digest
 from kswarms.scenarios.runs.sweep import Outcome, play_all
+from kswarms.scenarios.study.parquet import arrow_schema
 
 FILE: Final = "contribution.parquet"
 
-_TEXT, _WHOLE, _REAL = pa.string(), pa.int64(), pa.float64()
-
-SCHEMA: Final = pa.schema(
-    {
-        **dict.fromkeys(("scenario", "condition", "absent_from", "run", "run_without", "policy"), _TEXT),
-        **dict.fromkeys(("n", "seed", "robot", "swarm", "sud", "sud_without"), _WHOLE),
-        **dict.fromkeys(("time_sud", "time_sud_without", "reward", "reward_time"), _REAL),
-        **dict.fromkeys(("duration", "duration_without"), _REAL),
-        **{
-            f"{others}_{what}": _REAL
-            for others in ("mates", "opponents")
-            for what in ("t_a", "t_a_without", "t_a_met", "t_p", "t_p_without")
-        },
-    }
-)
+SCHEMA: Final = arrow_schema(TABLES["contribution"])
 """Columns of ``contribution.parquet``: one row for each game and robot (docs/contribution.md)."""
 
 AbsentFrom = Literal["learning", "game"]

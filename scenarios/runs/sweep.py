@@ -12,10 +12,6 @@ from typing import Any, Final
 
 from kswarms.scenarios.runs.run import Run, code_version, require_unchanged
 
-RECORDS: Final = ("conflicts", "robots", "trajectory")
-"""Tables that a game can record, besides its results."""
-
-
 _GONE: Final = "the workers are gone before all was played"
 
 

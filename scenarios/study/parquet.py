@@ -8,114 +8,31 @@ from typing import Any, Final
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from kswarms.agents.common.columns import ARM, RECORDED_TABLES, SCHEMA_VERSION, TABLES, Column
 from kswarms.scenarios.runs.run import Run
-from kswarms.scenarios.runs.sweep import RECORDS, Outcome
+from kswarms.scenarios.runs.sweep import Outcome
 from kswarms.scenarios.study.ledger import Ledger, Point
 
-_TEXT, _WHOLE, _REAL, _YES_NO = pa.string(), pa.int64(), pa.float64(), pa.bool_()
+_KINDS: Final = {"text": pa.string(), "integer": pa.int64(), "real": pa.float64(), "boolean": pa.bool_()}
 
-RUNS: Final = pa.schema(
-    {
-        "run": _TEXT,
-        "scenario": _TEXT,
-        "condition": _TEXT,
-        "n": _WHOLE,
-        "seed": _WHOLE,
-        "swarm": _WHOLE,
-        "size": _WHOLE,
-        "policy": _TEXT,
-        "pucks": _WHOLE,
-        "sud": _WHOLE,
-        "t_a_intra": _REAL,
-        "t_a_inter": _REAL,
-        "t_p": _REAL,
-        "conflicts_intra": _WHOLE,
-        "conflicts_inter": _WHOLE,
-        "duration": _REAL,
-        "ended": _TEXT,
-    }
-)
-"""Columns of ``runs.parquet``: one row for each (run, swarm) and each curve the run belongs to."""
 
-POLICIES: Final = pa.schema(
-    {
-        "run": _TEXT,
-        "scenario": _TEXT,
-        "condition": _TEXT,
-        "n": _WHOLE,
-        "seed": _WHOLE,
-        "swarm": _WHOLE,
-        "opponent": _WHOLE,
-        "action": _TEXT,
-        "share": _REAL,
-        "attack_share": _REAL,
-    }
-)
-"""Columns of ``policies.parquet``: one row for each (run, learning swarm, swarm learned about, action), and
-each curve the run belongs to."""
+def _arrow_type(kind: str) -> pa.DataType:
+    """Return the Arrow type of a kind of column."""
+    if kind.startswith("list of "):
+        return pa.list_(_arrow_type(kind.removeprefix("list of ")))
+    if kind == "arm":
+        return pa.struct({column.name: _arrow_type(column.kind) for column in ARM})
+    return _KINDS[kind]
 
-CONFLICTS: Final = pa.schema(
-    {
-        "run": _TEXT,
-        "phase": _TEXT,
-        "robot": _WHOLE,
-        "swarm": _WHOLE,
-        "opponent": _WHOLE,
-        "opponent_swarm": _WHOLE,
-        "start": _REAL,
-        "x": _REAL,
-        "y": _REAL,
-        "action": _TEXT,
-        "t_a": _REAL,
-        "t_p": _REAL,
-        "active": _WHOLE,
-        "seen": pa.list_(pa.list_(_WHOLE)),
-        "reward": _REAL,
-        "q": _REAL,
-    }
-)
-"""Columns of ``conflicts.parquet``: one row for each conflict that a robot began."""
 
-_ARM: Final = pa.struct(
-    {"opponent": _WHOLE, "action": _TEXT, "reward": _REAL, "time": _REAL, "count": _REAL, "q": _REAL}
-)
+def arrow_schema(columns: Iterable[Column]) -> pa.Schema:
+    """Return columns as an Arrow schema, with the version of all columns in its metadata."""
+    fields = {column.name: _arrow_type(column.kind) for column in columns}
+    return pa.schema(fields, metadata={"kswarms_schema": str(SCHEMA_VERSION)})
 
-ROBOTS: Final = pa.schema(
-    {
-        "run": _TEXT,
-        "robot": _WHOLE,
-        "swarm": _WHOLE,
-        "policy": _TEXT,
-        "pucks": _WHOLE,
-        "t_a": _REAL,
-        "t_p": _REAL,
-        "arms": pa.list_(_ARM),
-    }
-)
-"""Columns of ``robots.parquet``: one row for each robot at the end of its game, with what it learned."""
 
-TRAJECTORY: Final = pa.schema(
-    {
-        "run": _TEXT,
-        "time": _REAL,
-        "robot": _WHOLE,
-        "x": _REAL,
-        "y": _REAL,
-        "heading": _REAL,
-        "state": _TEXT,
-        "puck": _YES_NO,
-    }
-)
-"""Columns of ``trajectory.parquet``: one row for each robot and sample."""
-
-SCHEMAS: Final = {
-    "runs": RUNS,
-    "policies": POLICIES,
-    "conflicts": CONFLICTS,
-    "robots": ROBOTS,
-    "trajectory": TRAJECTORY,
-}
-"""Columns of every table by its name, which is the name of its file."""
+SCHEMAS: Final = {name: arrow_schema(TABLES[name]) for name in ("runs", "policies", *RECORDED_TABLES)}
+"""Schemas of the tables of a study, by name."""
 
 _RESULTS: Final = {"runs": "swarms", "policies": "policies"}
 """What the ledger calls the rows of the tables that have labels."""
@@ -180,7 +97,7 @@ def export(ledger: Ledger, directory: Path) -> list[Path]:
 
 def _rows(ledger: Ledger, name: str) -> Iterator[pa.Table]:
     """Yield the rows of a table, in order, some at a time."""
-    if name in RECORDS:
+    if name in RECORDED_TABLES:
         for run, rows in ledger.records(name):
             yield _of_run(run, name, pa.ipc.open_stream(rows).read_all())
     else:
@@ -217,7 +134,7 @@ def _record(name: str, columns: Mapping[str, list[Any]]) -> pa.Table:
 
 
 def _of_run(run: str, name: str, record: pa.Table) -> pa.Table:
-    return record.add_column(0, SCHEMAS[name].field(0), pa.array([run] * len(record), _TEXT))
+    return record.add_column(0, SCHEMAS[name].field(0), pa.array([run] * len(record), pa.string()))
 
 
 def _path(directory: Path, name: str) -> Path:

@@ -41,50 +41,18 @@ class Arm(NamedTuple):
 
 
 class ConflictAccount(NamedTuple):
-    """A conflict: who, where, what was known, what was chosen, what it earned.
+    """A conflict, and what its robot knew when it began.
 
     Attributes
     ----------
-    phase : {'learning', 'game'}
-        Whether learners still learned.
-    robot, swarm : int
-        Whose conflict it is: number of the robot from 0, its swarm from 1.
-    opponent, opponent_swarm : int
-        Whom it met.
-    start : float
-        When (s since the beginning, that of learning included).
-    x, y : float
-        Where (m).
+    row : dict of str to object
+        The columns of ``conflicts.parquet`` without `run` (`kswarms.agents.common.columns`).
     known : tuple of Arm
-        What the robot knew then of its actions against that swarm; empty if it learns nothing of it.
-    action : str
-        What it chose.
-    t_a, t_p : float
-        T(a) and T(p) (s).
-    active : int
-        Sensors that were active, n'_i.
-    seen : tuple of tuple of int
-        For each swarm, the robots that they read.
-    reward, q : float
-        R (s) and Q of the action after it; NaN where nothing was learned.
+        What the robot knew of its actions against that swarm; empty if it does not learn about it.
     """
 
-    phase: str
-    robot: int
-    swarm: int
-    opponent: int
-    opponent_swarm: int
-    start: float
-    x: float
-    y: float
+    row: dict[str, Any]
     known: tuple[Arm, ...]
-    action: str
-    t_a: float
-    t_p: float
-    active: int
-    seen: tuple[tuple[int, ...], ...]
-    reward: float
-    q: float
 
 
 def arms_known(learner: Learner, bandit: Bandit) -> tuple[Arm, ...]:
@@ -141,7 +109,7 @@ class Accounts:
             if not math.isnan(row["reward"]):
                 arm = [action.name for action in learner.actions].index(row["action"])
                 bandit.update(arm, row["reward"], row["t_a"] + row["t_p"], learner.rule.factor)
-        return ConflictAccount(known=known, **row)
+        return ConflictAccount(row, known)
 
 
 def conflicts_of(run: Run) -> list[ConflictAccount]:
@@ -164,7 +132,9 @@ def conflicts_of(run: Run) -> list[ConflictAccount]:
         with naming(name_of(run)):
             model = GameModel(run.game, seed=run.seed, record="conflicts")
             model.play()
-        return sorted(Accounts(model).take(), key=lambda account: (account.start, account.robot))
+        return sorted(
+            Accounts(model).take(), key=lambda account: (account.row["start"], account.row["robot"])
+        )
     finally:
         if model is not None:
             model.forget()
@@ -197,19 +167,20 @@ def told(account: ConflictAccount, begin: float) -> list[str]:
     begin : float
         When the measured game began, from which its time is counted (s).
     """
+    row, x, y = account.row, account.row["x"], account.row["y"]
     return [
-        f"{account.start - begin:.1f}",
-        f"{account.robot} of S{account.swarm}",
-        f"{account.opponent} of S{account.opponent_swarm}",
-        f"{account.x:z.2f}, {account.y:z.2f}",  # z: no −0.00
+        f"{row['start'] - begin:.1f}",
+        f"{row['robot']} of S{row['swarm']}",
+        f"{row['opponent']} of S{row['opponent_swarm']}",
+        f"{x:z.2f}, {y:z.2f}",  # z: no −0.00
         ", ".join(f"{arm.action} {number(arm.q)} ({arm.n:.4g})" for arm in account.known) or "–",
-        account.action,
-        f"{account.t_a:.1f}",
-        f"{account.t_p:.1f}",
-        str(account.active),
-        ", ".join(f"{len(own)} of S{k}" for k, own in enumerate(account.seen, 1) if own),
-        number(account.reward),
-        number(account.q),
+        row["action"],
+        f"{row['t_a']:.1f}",
+        f"{row['t_p']:.1f}",
+        str(row["active"]),
+        ", ".join(f"{len(own)} of S{k}" for k, own in enumerate(row["seen"], 1) if own),
+        number(row["reward"]),
+        number(row["q"]),
     ]
 
 

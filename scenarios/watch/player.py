@@ -222,7 +222,7 @@ class Player:
             for account in reversed(self.conflicts):
                 if len(found) == most:
                     break
-                if robot is None or account.robot == robot:
+                if robot is None or account.row["robot"] == robot:
                     found.append(account)
         return found
 

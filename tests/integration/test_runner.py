@@ -17,11 +17,12 @@ from pathlib import Path
 import mesa
 import pytest
 
+from kswarms.agents.common.columns import RECORDED_TABLES
 from kswarms.model.game_model import GameModel
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.runs import processes as workers
 from kswarms.scenarios.runs.run import Run, expand
-from kswarms.scenarios.runs.sweep import RECORDS, Failure, Outcome, RunError, attempt, play, play_all, sweep
+from kswarms.scenarios.runs.sweep import Failure, Outcome, RunError, attempt, play, play_all, sweep
 
 IMPORTS = """
 from kswarms.scenarios.catalogue import CATALOGUE
@@ -62,7 +63,7 @@ class Deadly(Run):
 def test_workers_and_order_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(workers, "GAMES_A_WORKER", 3)  # so that workers are replaced on the way
     runs = short("fig-6.1c") + short("fig-6.4a", (6,)) + short("fig-6.15", (7,), seeds=1)
-    record = ",".join(RECORDS)
+    record = ",".join(RECORDED_TABLES)
     here = by_name(play_all(runs, 1, record))
     shuffled = random.Random(3).sample(runs, len(runs))
     there = by_name(play_all(shuffled, 2, record))

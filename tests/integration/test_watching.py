@@ -13,9 +13,9 @@ from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.contribution.games import SCHEMA
 from kswarms.scenarios.runs.run import digest
-from kswarms.scenarios.study.find_run import recorded_run
 from kswarms.scenarios.study.ledger import find_run
 from kswarms.scenarios.watch.conflicts import TOLD, conflicts_of
+from kswarms.scenarios.watch.recorded_run import recorded_run
 
 
 @pytest.fixture(autouse=True)
@@ -73,9 +73,13 @@ def test_a_recorded_run_is_filmed_and_told_again(capsys: pytest.CaptureFixture[s
     assert header.split("  ")[0] == TOLD[0]
     run = find_run(Path("results"), name)
     assert run.seed == 3
-    expected = [account for account in conflicts_of(run) if account.robot == 2 and account.start <= 300]
+    expected = [
+        account for account in conflicts_of(run) if account.row["robot"] == 2 and account.row["start"] <= 300
+    ]
     assert len(lines) == len(expected) > 0
-    assert [float(line.split()[0]) for line in lines] == pytest.approx([a.start for a in expected])
+    assert [float(line.split()[0]) for line in lines] == pytest.approx(
+        [account.row["start"] for account in expected]
+    )
 
 
 def test_conflicts_may_begin_with_an_instant(capsys: pytest.CaptureFixture[str]) -> None:

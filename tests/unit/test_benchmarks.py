@@ -15,7 +15,7 @@ from kswarms.analysis.results.runs import read_policies
 from kswarms.model.game_model import GameModel
 from kswarms.model.kernel.percepts import CONFLICT, WALL
 from kswarms.scenarios.catalogue import CATALOGUE
-from kswarms.scenarios.study.parquet import POLICIES, RUNS
+from kswarms.scenarios.study.parquet import SCHEMAS
 
 TINY = Plan("avoid,attack", 6, 30.0)
 
@@ -106,7 +106,8 @@ def test_a_made_up_study_keeps_the_contract_of_the_tables(tmp_path: Path) -> Non
     scenarios = [CATALOGUE[name] for name in ("fig-6.8", "fig-7.10", "fig-6.15")]
     rows = report_benchmark.write_study(tmp_path, scenarios, densities=1, seeds=2)
     assert rows == 2 * (2 + 5 * 3 + 5)
-    for name, schema in (("runs", RUNS), ("policies", POLICIES)):
+    for name in ("runs", "policies"):
+        schema = SCHEMAS[name]
         assert pq.read_schema(tmp_path / f"{name}.parquet").names == schema.names
     learned = read_policies(tmp_path)
     assert set(zip(learned["scenario"], learned["swarm"], learned["opponent"], strict=True)) == {

@@ -82,8 +82,8 @@ def test_curves_of_those_who_left_end_when_they_do() -> None:
 
 def test_conflicts_are_told_by_number_with_what_that_robot_knew() -> None:
     accounts = conflicts_of(_run(NEVER))
-    assert {account.robot for account in accounts} <= {0, 2, 3, 5, 6, 7}
-    learned = [each for each in accounts if each.robot == 7 and not math.isnan(each.reward)]
+    assert {account.row["robot"] for account in accounts} <= {0, 2, 3, 5, 6, 7}
+    learned = [each for each in accounts if each.row["robot"] == 7 and not math.isnan(each.row["reward"])]
     assert learned
     assert all(each.known for each in learned)
     assert [sum(arm.n for arm in each.known) for each in learned] == list(range(len(learned)))

@@ -261,7 +261,7 @@ def test_a_policy_of_a_file_of_ones_own_plays(session: Session, tmp_path: Path) 
     session.change_swarm(1, policy=f"{file}:Coward")
     assert session.error == ""
     session.player.seek(60.0)
-    assert {account.action for account in session.player.conflicts} == {"flight"}
+    assert {account.row["action"] for account in session.player.conflicts} == {"flight"}
     file.write_text("class Coward:\n    pass\n")
     session.change_swarm(1, policy=f"{file}:Cowerd")
     assert "has no class Cowerd" in session.error

@@ -8,9 +8,10 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
+from kswarms.agents.common.columns import RECORDED_TABLES
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.runs.run import Run, expand
-from kswarms.scenarios.runs.sweep import RECORDS, Failure, Outcome
+from kswarms.scenarios.runs.sweep import Failure, Outcome
 from kswarms.scenarios.study import parquet as tables
 from kswarms.scenarios.study.database import FILE
 from kswarms.scenarios.study.ledger import Ledger
@@ -235,7 +236,7 @@ def with_robots(run: Run, **columns: list[object]) -> Outcome:
 
 
 def test_every_table_has_a_name_that_can_be_asked_for() -> None:
-    assert tuple(tables.SCHEMAS) == ("runs", "policies", *RECORDS)
+    assert tuple(tables.SCHEMAS) == ("runs", "policies", *RECORDED_TABLES)
     assert all(schema.names[0] == "run" for schema in tables.SCHEMAS.values())
 
 
@@ -274,9 +275,9 @@ def test_a_run_played_again_keeps_what_was_recorded_of_it(tmp_path: Path) -> Non
 def test_a_game_without_a_conflict_gives_a_table_without_rows(tmp_path: Path) -> None:
     (run,) = runs_of("fig-6.1c", seeds=1, densities=(6,))
     outcome = outcome_of(run)
-    outcome.records["conflicts"] = {name: [] for name in tables.CONFLICTS.names if name != "run"}
+    outcome.records["conflicts"] = {name: [] for name in tables.SCHEMAS["conflicts"].names if name != "run"}
     write(tmp_path, [run], lambda _: outcome)
-    assert pq.read_table(tmp_path / "conflicts.parquet").schema.equals(tables.CONFLICTS)
+    assert pq.read_table(tmp_path / "conflicts.parquet").schema.equals(tables.SCHEMAS["conflicts"])
 
 
 def test_a_run_alone_is_tabulated_as_the_ledger_exports_it(tmp_path: Path) -> None:

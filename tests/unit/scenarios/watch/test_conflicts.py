@@ -27,8 +27,8 @@ def test_what_is_known_at_the_end_is_what_the_robots_know(rule: str) -> None:
     accounts = conflicts_of(run)
     for robot in model.members[1]:
         assert isinstance(robot.policy, Learner)
-        own = [a for a in accounts if a.robot == robot.number and a.opponent_swarm == 1]
-        last = [a for a in own if a.phase == "game"]
+        own = [a for a in accounts if a.row["robot"] == robot.number and a.row["opponent_swarm"] == 1]
+        last = [a for a in own if a.row["phase"] == "game"]
         told_then, knows = last[-1].known, arms_known(robot.policy, robot.policy.bandits[0])
         for then, now in zip(told_then, knows, strict=True):
             assert then.action == now.action
@@ -36,37 +36,39 @@ def test_what_is_known_at_the_end_is_what_the_robots_know(rule: str) -> None:
 
 
 def test_each_conflict_changes_what_is_known_at_the_next_by_itself_alone() -> None:
-    accounts = [a for a in conflicts_of(_run("inter-learner")) if a.robot == 7 and a.opponent_swarm == 1]
-    learned = [(a, b) for a, b in pairwise(accounts) if not math.isnan(a.reward)]
+    accounts = [
+        a for a in conflicts_of(_run("inter-learner")) if a.row["robot"] == 7 and a.row["opponent_swarm"] == 1
+    ]
+    learned = [(a, b) for a, b in pairwise(accounts) if not math.isnan(a.row["reward"])]
     assert len(learned) > 10
     for earlier, later in learned:
         for before, after in zip(earlier.known, later.known, strict=True):
-            if before.action == earlier.action:
+            if before.action == earlier.row["action"]:
                 assert after.n == before.n + 1
-                assert after.q == pytest.approx(earlier.q)
+                assert after.q == pytest.approx(earlier.row["q"])
             else:
                 assert after[:3] == pytest.approx(before[:3], nan_ok=True)
 
 
 def test_what_is_chosen_while_learning_has_the_greatest_bound() -> None:
-    accounts = [a for a in conflicts_of(_run("inter-learner")) if a.phase == "learning" and a.known]
+    accounts = [a for a in conflicts_of(_run("inter-learner")) if a.row["phase"] == "learning" and a.known]
     compared = [a for a in accounts if not math.isnan(a.known[0].bound)]
     assert len(compared) > 50
     for account in compared:
         bounds = {arm.action: arm.bound for arm in account.known}
-        assert bounds[account.action] == pytest.approx(max(bounds.values()))
-    game = [a for a in conflicts_of(_run("inter-learner")) if a.phase == "game" and a.known]
+        assert bounds[account.row["action"]] == pytest.approx(max(bounds.values()))
+    game = [a for a in conflicts_of(_run("inter-learner")) if a.row["phase"] == "game" and a.known]
     for account in game:
         values = {arm.action: arm.q for arm in account.known if arm.n > 0}
-        assert values[account.action] == pytest.approx(max(values.values()))
+        assert values[account.row["action"]] == pytest.approx(max(values.values()))
 
 
 def test_robots_that_do_not_learn_know_nothing() -> None:
     run = _run("inter-learner")
     accounts = conflicts_of(run)
-    assert all(a.known == () for a in accounts if a.swarm == 1 or a.opponent_swarm == 2)
-    assert [a.start for a in accounts] == sorted(a.start for a in accounts)
-    assert {a.phase for a in accounts} == {"learning", "game"}
+    assert all(a.known == () for a in accounts if a.row["swarm"] == 1 or a.row["opponent_swarm"] == 2)
+    assert [a.row["start"] for a in accounts] == sorted(a.row["start"] for a in accounts)
+    assert {a.row["phase"] for a in accounts} == {"learning", "game"}
 
 
 def test_conflicts_are_taken_once_and_leave_the_memory() -> None:
@@ -79,17 +81,21 @@ def test_conflicts_are_taken_once_and_leave_the_memory() -> None:
     assert not any(model.datacollector.tables["conflicts"].values())
     while model.running:
         model.step()
-    whole = sorted([*first, *accounts.take()], key=lambda account: (account.start, account.robot))
+    whole = sorted(
+        [*first, *accounts.take()], key=lambda account: (account.row["start"], account.row["robot"])
+    )
     assert [told(account, 0.0) for account in whole] == [told(account, 0.0) for account in conflicts_of(run)]
     assert 0 < len(first) < len(whole)
 
 
 def test_a_conflict_is_told_in_a_line() -> None:
     run = _run("inter-learner")
-    account = next(a for a in conflicts_of(run) if a.known and a.known[0].n > 0 and a.phase == "learning")
+    account = next(
+        a for a in conflicts_of(run) if a.known and a.known[0].n > 0 and a.row["phase"] == "learning"
+    )
     cells = told(account, 300.0)
-    assert cells[0] == f"{account.start - 300:.1f}"
-    assert cells[1] == f"{account.robot} of S2"
+    assert cells[0] == f"{account.row['start'] - 300:.1f}"
+    assert cells[1] == f"{account.row['robot']} of S2"
     assert cells[4].startswith("flight ")
-    assert cells[5] == account.action
+    assert cells[5] == account.row["action"]
     assert number(math.nan) == "–"

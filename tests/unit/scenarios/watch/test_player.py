@@ -93,7 +93,7 @@ def test_the_next_conflict_of_a_robot_is_where_it_begins() -> None:
     start = player.time - 0.1
     player.to_next_conflict(6)
     newest = player.conflicts_of(6, 1)[0]
-    assert newest.start - player.begin == pytest.approx(start)
+    assert newest.row["start"] - player.begin == pytest.approx(start)
     player.seek(-0.05)
     player.to_next_conflict(6)  # although the counts begin anew with the measured game
     assert player.time > 0.0
@@ -105,9 +105,9 @@ def test_conflicts_are_told_newest_first_of_one_robot_or_of_all() -> None:
     everybody = player.conflicts_of(None, 1000)
     assert len(everybody) == len(player.conflicts) > 20
     own = player.conflicts_of(3, 5)
-    assert [account.start for account in own] == sorted((a.start for a in own), reverse=True)
-    assert {account.robot for account in own} == {3}
-    assert own == [account for account in everybody if account.robot == 3][:5]
+    assert [account.row["start"] for account in own] == sorted((a.row["start"] for a in own), reverse=True)
+    assert {account.row["robot"] for account in own} == {3}
+    assert own == [account for account in everybody if account.row["robot"] == 3][:5]
 
 
 def test_a_long_history_is_thinned_and_keeps_its_first_sample(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,20 @@
+"""The schema of the tables of results."""
+
+from kswarms.agents.common.columns import ARM, TABLES, data_dictionary, names
+
+
+def test_names_can_be_selected_by_kind() -> None:
+    assert names("robots") == ("run", "robot", "swarm", "policy", "pucks", "t_a", "t_p", "arms")
+    assert names("robots", "text", "real") == ("run", "policy", "t_a", "t_p")
+
+
+def test_column_names_of_a_table_are_unique() -> None:
+    for table in TABLES:
+        assert len(set(names(table))) == len(TABLES[table])
+
+
+def test_the_data_dictionary_has_every_table_and_column() -> None:
+    text = data_dictionary()
+    assert text.count("\n| `") == sum(map(len, TABLES.values())) + len(ARM)
+    assert "\n### `contribution.parquet`\n" in text
+    assert "\n| `mates_t_a_met` | real | robot-seconds | T(a) of its mates in conflicts with it |\n" in text
