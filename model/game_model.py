@@ -16,7 +16,6 @@ import simpy
 from simpy.core import StopSimulation
 from simpy.events import Event
 
-from kswarms.agents.actions import LONGEST
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.robot.conflict import Conflict
 from kswarms.agents.robot.controller import Habits
@@ -40,8 +39,6 @@ class GameModel(mesa.Model):
         Seed of the run, ≥ 0: names all random streams, together with robot and purpose.
     record : str
         What to keep, a comma-separated list of `kswarms.model.recorder.RECORDS`; nothing if empty.
-    sample_period : float
-        Time between two samples, and of one `step` (s).
 
     Attributes
     ----------
@@ -74,13 +71,9 @@ class GameModel(mesa.Model):
         If a parameter is not allowed or the robots find no place.
     """
 
-    def __init__(self, game: Game, seed: int = 0, record: str = "", sample_period: float = 10.0) -> None:
+    def __init__(self, game: Game, seed: int = 0, record: str = "") -> None:
         if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
             raise InputError("seed", seed, "must be a whole number ≥ 0")
-        if not isinstance(sample_period, float | int | np.number) or not 0 < sample_period <= LONGEST:
-            raise InputError(
-                "sample_period", sample_period, f"must be a number of seconds > 0, ≤ {LONGEST:g}"
-            )
         recorded = recording.parse_record(record)
         super().__init__(seed=int(seed))
         self.game = game
@@ -115,7 +108,7 @@ class GameModel(mesa.Model):
         Instant(self.env, BEFORE_TIMEOUTS, self._time_is_up).happen_in(self._end)
         self._motion = Instant(self.env, AFTER_TIMEOUTS, self._move)
         self._motion.happen_in(0)
-        self._sample_every = self.habits.periods(sample_period)
+        self._sample_every = self.habits.periods(game.sample_period)
         self._recorded = recorded
         self.sample_times: list[float] = []
         self.datacollector = recording.make_collector(len(game.swarms), recorded)
@@ -309,7 +302,7 @@ class GameModel(mesa.Model):
 
 
 def _habits(game: Game) -> Habits:
-    parameters, body = game.parameters, game.body_preset
+    parameters, body = game.parameters, game.body
     return Habits(
         period=parameters.period,
         turn_step=parameters.turning_rate * parameters.period,

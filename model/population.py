@@ -44,7 +44,7 @@ def place(game: Game, arena: Arena, seed: int, random: Random) -> tuple[Continuo
     InputError
         If the robots find no place.
     """
-    half, body, parameters = arena.half, game.body_preset, game.parameters
+    half, body, parameters = arena.half, game.body, game.parameters
     positions, headings = start_poses(
         game.size, seed, half, body.radius, parameters.clearance, parameters.wall_clearance
     )
@@ -73,7 +73,7 @@ def make_robots(model: World, game: Game, seed: int) -> list[Krembot]:
     InputError
         If a policy cannot be made.
     """
-    period, top_speed = game.parameters.period, game.body_preset.top_speed
+    period, top_speed = game.parameters.period, game.body.top_speed
     robots: list[Krembot] = []
     for k, swarm in enumerate(game.swarms):
         for rank, name in enumerate(deal(swarm.policy, swarm.size)):

@@ -43,7 +43,6 @@ def scene() -> Scene:
         drives: tuple[float, float] = (0.6, 0.6),
         seed: int = 0,
         record: str = "",
-        sample_period: float = 10.0,
         **rest: Any,
     ) -> GameModel:
         """Build a game from the poses (m, m, rad) of each swarm.
@@ -58,7 +57,7 @@ def scene() -> Scene:
             Preset of the parameters, and what differs from it.
         drives : tuple of float
             Drive of all in state P and in state A.
-        seed, record, sample_period
+        seed, record
             As in `GameModel`.
         **rest
             Fields of the game.
@@ -72,7 +71,7 @@ def scene() -> Scene:
             parameters=PRESETS[preset].replace(**(changes or {})),
             **{"duration": 60.0, **rest},
         )
-        model = GameModel(game, seed=seed, record=record, sample_period=sample_period)
+        model = GameModel(game, seed=seed, record=record)
         for robot, (x, y, heading) in zip(model.robots, [p for poses in swarms for p in poses], strict=True):
             robot.position = np.array([x, y])
             row = model.fleet.robots[robot.index : robot.index + 1]

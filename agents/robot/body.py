@@ -16,7 +16,7 @@ class Body(Checked):
     Attributes
     ----------
     name : str
-        Name of the preset.
+        Name of the preset, or of a user-defined body.
     radius : float
         Radius of the body (m).
     sensor_range : float
@@ -25,10 +25,10 @@ class Body(Checked):
         Speed at a drive of 100 % (m/s).
     """
 
-    name: str
-    radius: float = Field(gt=0)
-    sensor_range: float = Field(gt=0)
-    top_speed: float = Field(gt=0)
+    name: str = "user-defined"
+    radius: float = Field(ge=0.001, le=1000)
+    sensor_range: float = Field(gt=0, le=10_000)
+    top_speed: float = Field(gt=0, le=10_000)
 
     @property
     def sensing_scale(self) -> float:

@@ -1,1 +1,1 @@
-"""Images of a game from above, and films of them."""
+"""Pictures of a game from above, and films of them."""

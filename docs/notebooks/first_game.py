@@ -48,7 +48,7 @@ def draw_arena(model, axes):
     for robot in model.robots:
         x, y = robot.position
         row = model.fleet.robots[robot.index]
-        radius = model.game.body_preset.radius
+        radius = model.game.body.radius
         axes.add_patch(plt.Circle((x, y), radius, color=COLOURS[robot.swarm], alpha=0.9))
         axes.plot([x, x + radius * row["forward_x"]], [y, y + radius * row["forward_y"]], color="white")
         if robot.carrying:

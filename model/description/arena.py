@@ -1,6 +1,7 @@
 """The arena: a square with supply stations and home bases (specification, section 2.1). SI units."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -10,37 +11,35 @@ from kswarms.agents.common.arrays import Floats
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.streams import WORLD, Purpose, stream
 
-LAYOUTS: Final = ("symmetric", "nearer-station", "random-stations")
-
-# For the arena of 2 × 2 m; all else follows.
+# Positions of the layouts in an arena of 2 m × 2 m.
 _SIDE: Final = 2.0
 _BASE_X: Final = 0.80
 _STATION_Y: Final = 0.66
 _BASE_SPACING: Final = 0.36
-"""Distance in y between bases on one side."""
+"""Distance in y between neighbouring bases on one side (m)."""
 _NEARER: Final = (0.96, 1.12)
-"""Distances of the upper station from S1's and S2's base in the disadvantaged arena."""
+"""Distances of the upper station from the bases of S1 and S2 in the disadvantaged arena (m)."""
 
 
 @dataclass(frozen=True)
 class Arena:
-    """Where things are.
+    """Places in the arena; the origin is its middle.
 
     Attributes
     ----------
     half : float
-        Half the side of the square, whose middle is the origin (m).
-    stations : ndarray of float64, shape (2, 2)
-        Middles of the supply stations (m).
+        Half the side of the square (m).
+    stations : ndarray of float64, shape (S, 2)
+        Centres of the supply stations (m).
     bases : ndarray of float64, shape (K, 2)
-        Middles of the home bases, S1 first (m).
+        Centres of the home bases, S1 first (m).
     station_radius, base_radius : float
         (m)
 
     Raises
     ------
     InputError
-        If two of them overlap, or one and a wall.
+        If two places overlap, or a place and a wall.
     """
 
     half: float
@@ -50,43 +49,47 @@ class Arena:
     base_radius: float
 
     def __post_init__(self) -> None:
-        places = [(f"base {k + 1}", base, self.base_radius) for k, base in enumerate(self.bases)]
-        places += [
-            (f"station {k + 1}", station, self.station_radius) for k, station in enumerate(self.stations)
-        ]
-        for k, (name, middle, radius) in enumerate(places):
-            if np.abs(middle).max() + radius > self.half:
-                raise InputError(
-                    name,
-                    [round(float(c), 3) for c in middle],
-                    f"with radius {radius} m must lie inside the walls",
-                )
-            for other, there, its_radius in places[:k]:
-                if math.dist(middle, there) < radius + its_radius:
-                    raise InputError(
-                        name,
-                        [round(float(c), 3) for c in middle],
-                        f"with radius {radius} m must not overlap {other}",
-                    )
+        names = [f"base {k + 1}" for k in range(len(self.bases))]
+        names += [f"station {k + 1}" for k in range(len(self.stations))]
+        places = [*self.bases.tolist(), *self.stations.tolist()]
+        radii = [self.base_radius] * len(self.bases) + [self.station_radius] * len(self.stations)
+        for k, ((x, y), radius) in enumerate(zip(places, radii, strict=True)):
+            rule = ""
+            if max(abs(x), abs(y)) + radius > self.half:
+                rule = "must lie inside the walls"
+            for other in range(k):
+                if math.dist(places[other], (x, y)) < radius + radii[other]:
+                    rule = rule or f"must not overlap {names[other]}"
+            if rule:
+                raise InputError(names[k], [round(x, 3), round(y, 3)], f"with radius {radius} m {rule}")
 
 
 def build_arena(
-    layout: str, swarms: int, side: float, station_radius: float, base_radius: float, seed: int
+    layout: str,
+    swarms: int,
+    side: float,
+    station_radius: float,
+    base_radius: float,
+    seed: int,
+    stations: Sequence[tuple[float, float]] = (),
+    bases: Sequence[tuple[float, float]] = (),
 ) -> Arena:
     """Build an arena.
 
     Parameters
     ----------
     layout : str
-        One of `LAYOUTS`.
+        As in `kswarms.model.description.fields.GameFields`.
     swarms : int
-        Number of swarms, K.
+        Number of swarms K.
     side : float
-        Side of the square (m); positions, given for 2 m, scale with it.
+        Side of the square (m); the positions of a layout scale with it.
     station_radius, base_radius : float
         (m)
     seed : int
-        Seed of the run, used by ``random-stations``.
+        Seed of the run; only random stations depend on it.
+    stations, bases : sequence of (float, float)
+        Centres in place of those of the layout (m).
 
     Raises
     ------
@@ -94,31 +97,25 @@ def build_arena(
         If stations, bases and walls overlap.
     """
     scale = side / _SIDE
-    bases = scale * base_positions(swarms)
-    if layout == "random-stations":
-        stations = _random_stations(seed, bases, side / 2, station_radius, base_radius)
+    base_places = np.array(bases) if bases else scale * base_positions(swarms)
+    if stations:
+        station_places = np.array(stations)
+    elif layout == "random-stations":
+        station_places = _random_stations(seed, base_places, side / 2, station_radius, base_radius)
     else:
-        stations = scale * np.array([[0.0, _STATION_Y], [0.0, -_STATION_Y]])
+        station_places = scale * np.array([[0.0, _STATION_Y], [0.0, -_STATION_Y]])
         if layout == "nearer-station":
-            stations[0] = scale * _nearer_station()
-    return Arena(side / 2, stations, bases, station_radius, base_radius)
+            station_places[0] = scale * _nearer_station()
+    return Arena(side / 2, station_places, base_places, station_radius, base_radius)
 
 
 def base_positions(swarms: int) -> Floats:
-    """Return the bases for a side of 2 m: all with the same sum of distances to the two stations.
+    """Return the bases for a side of 2 m (m), ndarray of float64, shape (K, 2).
 
-    S1, S3, S5 … lie on the left from top to bottom, S2, S4 … on the right.
-
-    Parameters
-    ----------
-    swarms : int
-        Number of swarms, K.
-
-    Returns
-    -------
-    ndarray of float64, shape (K, 2)
+    All bases have the same sum of distances to the two stations. S1, S3, S5 … lie on the left from top to
+    bottom, S2, S4 … on the right.
     """
-    # The points with the distance sum of (±0.8, 0) form an ellipse with the stations as foci.
+    # Points with the same sum of distances as (±0.8, 0) form an ellipse with the stations as foci.
     long_axis = math.hypot(_BASE_X, _STATION_Y)
     bases = np.empty((swarms, 2))
     for first, sign in ((0, -1.0), (1, 1.0)):
@@ -130,7 +127,7 @@ def base_positions(swarms: int) -> Floats:
 
 
 def _nearer_station() -> Floats:
-    """Return the upper station of the disadvantaged arena, solved from its distances to the two bases."""
+    """Return the upper station of the disadvantaged arena, from its distances to the two bases (m)."""
     near, far = _NEARER
     x = (near**2 - far**2) / (4 * _BASE_X)
     return np.array([x, math.sqrt(near**2 - (x + _BASE_X) ** 2)])
@@ -139,7 +136,7 @@ def _nearer_station() -> Floats:
 def _random_stations(
     seed: int, bases: Floats, half: float, station_radius: float, base_radius: float
 ) -> Floats:
-    """Draw two stations that overlap no base, no wall and not each other."""
+    """Draw two stations that overlap neither bases, walls nor each other."""
     draws = stream(seed, WORLD, Purpose.STATIONS)
     limit = max(0.0, half - station_radius)
     stations: list[Floats] = []

@@ -10,56 +10,56 @@ from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
 
 FARTHEST: Final = 10_000.0
-"""No sense reaches farther, nor are robots put farther apart (m): as far as the side of the largest arena."""
+"""Maximum of all distances and of the side of the arena (m)."""
 SHORTEST_PERIOD: Final = 1e-6
-"""Less (s) would only make more periods of everything, until they cannot be counted."""
+"""Minimum control period (s)."""
 SLOWEST_TURN: Final = 1e-9
-"""Turning more slowly (rad/s), a robot would take a century to turn about."""
+"""Minimum turning rate (rad/s): half a turn takes a century."""
 
 
 class Parameters(Checked):
-    """What neither the thesis nor the public simulator fixes, with the defaults fitted to Table 6.1.
+    """Free parameters of the world: fixed neither by the thesis nor by the public simulator.
 
-    Distances are for the body in the simulator's scale; the sensing distances of another body are
-    scaled by its `kswarms.agents.robot.body.Body.sensing_scale`.
+    The defaults are fitted to Table 6.1. Distances are for the body in the simulator's scale; sensing
+    distances of another body are scaled by its `kswarms.agents.robot.body.Body.sensing_scale`.
 
     Attributes
     ----------
     period : float
-        Control period (s); every duration rounds up to whole periods.
+        Control period (s); every duration is rounded up to whole periods.
     conflict_distance : float
-        Gap between two surfaces within which a robot ahead starts a conflict (m).
+        Maximum gap between the surfaces of two robots in conflict (m).
     front_half_angle : float
-        Bearings within ± this angle are ahead (rad).
+        A robot is ahead if its bearing is within ± this angle (rad).
     flight_duration, fight_duration : float
-        How long the two standard actions drive, after their turn (s).
+        Driving time of the two standard actions after their turn (s).
     turning_rate : float
-        Of every turn in place (rad/s).
+        Angular speed of every turn in place (rad/s).
     flight_range : float
-        Free distances are cut off there when a flight looks for the most vacant direction (m).
+        Cut-off of the free distances among which a flight looks for the most vacant direction (m).
     active_range : float
-        A sensor with something nearer than this counts as active, n'_i of Eq. 5.4 (m).
+        A sensor is active if its free distance is at most this, n'_i of Eq. 5.4 (m).
     leg_mean : float
-        Mean of the exponential duration of a straight leg of the wandering (s).
+        Mean of the exponential duration of a straight leg while wandering (s).
     wander_turn : float
         The turn between two legs is uniform within ± this angle (rad).
     wall_distance : float
-        Gap to a wall ahead within which a wandering robot turns away (m).
+        Gap to a wall ahead at which a wandering robot turns away (m).
     wall_half_angle : float
-        0: a wall is looked for straight ahead; else also along rays at ± this angle (rad).
+        Angle of two more rays, on either side of the heading, that detect walls (rad); 0 for none.
     wall_escape : {'clear', 'away'}
-        The new heading is uniform among those that meet no wall within the wall distance, or among
-        those that point away from the walls met.
+        The new heading is uniform among headings without a wall within the wall distance, or among
+        headings that point away from the detected walls.
     station_radius, base_radius : float
-        A robot whose centre is nearer to the middle is at the station, at the base (m).
+        A robot is at a station, or at its base, if its centre is within this radius (m).
     base_range : float
-        The own base is seen within this distance, centre to centre (m).
+        Maximum distance, centre to centre, at which a robot sees its base (m).
     friction : float
         Coulomb coefficient of the contacts.
     push_share : float
-        Share of a blocked motion by which the standing body is shoved, 0 to 1.
+        Fraction of a blocked motion that shoves the standing body, 0 to 1.
     clearance, wall_clearance : float
-        Least gaps between bodies, and to the walls, at the start (m).
+        Minimum gaps between bodies, and to the walls, at the start (m).
     preempt : bool
         Whether another robot ahead interrupts an action.
     """
@@ -96,7 +96,7 @@ class Parameters(Checked):
 
 PRESETS: Final = {
     "fitted": Parameters(),
-    # The controller that the ARGoS measurements were made with; friction and push share are fitted to them.
+    # The controller of the ARGoS measurements; friction and push share are fitted to them.
     "argos": Parameters(
         conflict_distance=0.10,
         front_half_angle=math.radians(67.5),
@@ -120,27 +120,41 @@ PRESETS: Final = {
 
 
 def parse_parameters(text: str) -> Parameters:
-    """Read the name of a preset, followed by single parameters that differ from it.
+    """Parse the name of a preset, followed by changes of single parameters.
 
     Parameters
     ----------
     text : str
-        For example ``"argos"``, or ``"fitted, friction=0.3, preempt=true"``.
+        For example ``"argos"`` or ``"fitted, friction=0.3, preempt=true"``.
 
     Raises
     ------
     InputError
-        If there is no such preset or parameter, or the value is not allowed.
+        If a preset or parameter does not exist, or a value is not allowed.
     """
     preset, *changes = (part.strip() for part in text.split(","))
     if preset not in PRESETS:
         raise InputError("parameters", preset, f"must begin with one of {', '.join(PRESETS)}")
-    pairs = [change.partition("=") for change in changes]
-    for name, sign, _ in pairs:
+    values: dict[str, str] = {}
+    for change in changes:
+        name, sign, value = (part.strip() for part in change.partition("="))
         if not sign:
             raise InputError("parameters", name, "after the preset, must be name=value")
-    values: dict[str, str] = {}
-    for name, _, value in pairs:
-        if values.setdefault(name.strip(), value.strip()) != value.strip():
-            raise InputError(f"parameters.{name.strip()}", value.strip(), "must be given once")
+        if values.setdefault(name, value) != value:
+            raise InputError(f"parameters.{name}", value, "must be given once")
     return PRESETS[preset].replace(**values)
+
+
+def text_of(parameters: Parameters) -> str:
+    """Return the shortest text that `parse_parameters` reads as these parameters.
+
+    Examples
+    --------
+    >>> text_of(Parameters(friction=0.3))
+    'fitted, friction=0.3'
+    """
+    texts = []
+    for preset, defaults in PRESETS.items():
+        changes = [f"{name}={value}" for name, value in parameters if value != getattr(defaults, name)]
+        texts.append(", ".join([preset, *changes]))
+    return min(texts, key=len)

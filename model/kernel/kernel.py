@@ -66,7 +66,7 @@ class Kernel:
             arena.bases,
             work,
             np.zeros((n, MAX_CONTACTS), dtype=CONTACT),
-            np.zeros(room_for_pairs(n, pair_reach, game.body_preset.radius), dtype=PAIR),
+            np.zeros(room_for_pairs(n, pair_reach, game.body.radius), dtype=PAIR),
             np.zeros(cells * cells + 1, dtype=np.int64),
             self.events,
         )
@@ -86,7 +86,7 @@ def make_world(game: Game, arena: Arena) -> Records:
     -------
     ndarray of `kswarms.model.kernel.arrays.WORLD`, shape (1,)
     """
-    parameters, body = game.parameters, game.body_preset
+    parameters, body = game.parameters, game.body
     radius, scale = body.radius, body.sensing_scale
     fastest = body.top_speed * parameters.period * max(max(s.drive, s.drive_action) for s in game.swarms)
     world: Records = np.zeros(1, dtype=WORLD)

@@ -5,7 +5,6 @@ from typing import Annotated
 
 import typer
 
-from kswarms.model.description.parameters import parse_parameters
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selecting import chosen
 from kswarms.scenarios.cli.options import ids
@@ -35,9 +34,8 @@ def _size(scenarios: Iterable[Scenario]) -> tuple[str, str, str]:
             for n in scenario.densities:
                 seeds[nameless, n] = max(scenario.seeds, seeds.get((nameless, n), 0))
     curves = {condition for condition, _ in seeds}
-    periods = {curve.parameters: parse_parameters(curve.parameters).period for curve in curves}
     cost = sum(
-        games * cpu_seconds(n, each.learning, each.duration, each.puck_limit, periods[each.parameters])
+        games * cpu_seconds(n, each.learning, each.duration, each.puck_limit, each.parameters.period)
         for (each, n), games in seeds.items()
     )
     return str(len(curves)), f"{sum(seeds.values()):,}", clock(cost)

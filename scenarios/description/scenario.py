@@ -1,103 +1,74 @@
-"""Scenarios as data: which swarms meet in which world, at which densities (specification, chapter 3).
+"""Scenarios as data: swarms, world, densities and seeds of an experiment (specification, chapter 3).
 
-A scenario belongs to one figure or table of the source; each of its conditions is one curve. Both
-are frozen and checked when they are made, so that a scenario that exists can be played.
+A scenario belongs to one figure or table of the source; each of its conditions is one curve. Both are frozen
+and validated on construction, so every scenario object can be played.
 """
 
 import math
 from collections.abc import Iterable
 from typing import Any, Final, Self
 
+import tomlkit
 from pydantic import Field, model_validator
 
-from kswarms.agents.actions import Action
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.robot.body import BODIES
+from kswarms.model.description.fields import GameFields, SwarmFields
 from kswarms.model.description.game import Game, Swarm, apportion
-from kswarms.model.description.parameters import parse_parameters
+from kswarms.model.description.parameters import text_of
 
 DENSITIES: Final = (6, 10, 16, 20, 26, 30, 36, 40, 46, 50)
-"""Robots in all, unless a scenario says otherwise (section 3.1)."""
-
+"""Default numbers of robots (section 3.1)."""
 SEEDS: Final = 20
-"""Games for each density, unless a scenario says otherwise (section 3.1)."""
-
+"""Default number of games per density (section 3.1)."""
 LEARNING: Final = 3000.0
-"""Time for which a learner learns before the game that is measured (s, section 3.1)."""
-
+"""Duration of the learning phase of learners in the source (s, section 3.1)."""
 MOST_SEEDS: Final = 1_000_000
-"""Games for a density at most."""
+"""Maximum number of games per density."""
 LONGEST_NAME: Final = 100
 LONGEST_TITLE: Final = 200
-"""Letters of a name, which files are called by, and of a title."""
+"""Maximum number of characters of a name, which file names contain, and of a title."""
 _ONE_LINE: Final = r"^[^\x00-\x1f\x7f]*$"
 
 
-class SwarmRule(Checked):
-    """One swarm of a condition, whatever the number of robots.
+class SwarmRule(SwarmFields):
+    """One swarm of a condition.
 
     Attributes
     ----------
-    policy : str
-        A policy with its arguments, as ``inter-learner(rule='greedy')``, the name of an action, or several
-        of these joined by ``+``.
     share : int
-        The swarm's part of all robots, in proportion to the other swarms' shares.
-    drive, drive_action : float
-        Share of the top speed in state P and in state A.
+        Share of all robots, in proportion to the shares of the other swarms.
     """
 
-    policy: str = Field(min_length=1)
     share: int = Field(default=1, ge=1)
-    drive: float = 0.6
-    drive_action: float = 0.6
 
 
-class Condition(Checked):
-    """One curve of a scenario: everything about a game but its seed and its number of robots.
+class Condition(GameFields):
+    """One curve of a scenario: everything that a game has except its seed and its number of robots.
 
     Attributes
     ----------
     name : str
-        Name of the curve, empty if the scenario has no other.
+        Name of the curve; may be empty if it is the only one.
     swarms : tuple of SwarmRule
         S1 to SK.
-    layout, body : str
-        Names of the arena's layout and of the robots' body.
-    parameters : str
-        Name of a preset and what differs from it, as ``"fitted, period=0.05"``.
-    actions : tuple of Action
-        What robots can do; empty for flight and fight as the parameters have them.
-    learning : float
-        Time for which learners learn before the game (s); with 0 they learn in the game itself.
-    duration : float
-        Length of the game (s), the limit if it is played for pucks.
-    puck_limit, supply : int, optional
-        Pucks that end the game; pucks of each station. None: no limit.
     multiple_of : int, optional
-        What the number of robots must be a multiple of. None: of the sum of the shares in lowest
-        terms, so that the proportions hold exactly.
+        The number of robots must be a multiple of it. The default is the sum of the shares in lowest terms,
+        so that the proportions hold exactly.
     """
 
     name: str = Field(default="", max_length=LONGEST_NAME, pattern=_ONE_LINE)
     swarms: tuple[SwarmRule, ...] = Field(min_length=1)
-    layout: str = "symmetric"
-    body: str = "krembot-sim"
-    parameters: str = "fitted"
-    actions: tuple[Action, ...] = ()
-    learning: float = 0.0
-    duration: float = 600.0
-    puck_limit: int | None = None
-    supply: int | None = None
     multiple_of: int | None = Field(default=None, ge=1)
 
     def sizes(self, n: int) -> list[int]:
-        """Return how many of `n` robots each swarm has.
+        """Return the size of each swarm if there are `n` robots.
 
         Raises
         ------
         InputError
-            If `n` does not suit the proportions, or leaves a swarm empty.
+            If `n` does not suit the proportions or leaves a swarm empty.
         """
         shares = [swarm.share for swarm in self.swarms]
         step = self.multiple_of or sum(shares) // math.gcd(*shares)
@@ -113,40 +84,30 @@ class Condition(Checked):
         Raises
         ------
         InputError
-            If there is no such game.
+            If the game is not allowed.
         """
         swarms = tuple(
             Swarm(policy=rule.policy, size=size, drive=rule.drive, drive_action=rule.drive_action)
             for rule, size in zip(self.swarms, self.sizes(n), strict=True)
         )
-        return Game(
-            swarms=swarms,
-            layout=self.layout,
-            parameters=parse_parameters(self.parameters),
-            body=self.body,
-            actions=self.actions,
-            learning=self.learning,
-            duration=self.duration,
-            puck_limit=self.puck_limit,
-            supply=self.supply,
-        )
+        return Game(swarms=swarms, **self.game_fields())
 
 
 class Scenario(Checked):
-    """An experiment: its curves, the numbers of robots and the seeds they are played with.
+    """An experiment: its curves, numbers of robots and seeds.
 
     Attributes
     ----------
     id : str
-        Name of the source's figure, as ``fig-6.1a``.
+        Name, for example of a figure of the source: ``fig-6.1a``.
     title : str
-        What meets what, in a line.
+        One line.
     conditions : tuple of Condition
-        The curves, under names that differ.
+        The curves; their names differ.
     densities : tuple of int
-        Numbers of robots in all.
+        Numbers of robots.
     seeds : int
-        Games for each density.
+        Number of games per density.
     """
 
     id: str = Field(pattern=r"^[a-z0-9][a-z0-9.-]*$", max_length=LONGEST_NAME)
@@ -159,20 +120,20 @@ class Scenario(Checked):
     def _playable(self) -> Self:
         names = [condition.name for condition in self.conditions]
         if len(set(names)) < len(names):
-            raise InputError("conditions", names, "must have names that differ")
+            raise InputError("conditions", names, "must have different names")
         for condition in self.conditions:
             for n in self.densities:
                 condition.sizes(n)
-            condition.game(max(self.densities))  # fewer robots fit where more do
+            condition.game(max(self.densities))  # fewer robots need less room
         return self
 
     def game(self, condition: str, n: int) -> Game:
-        """Return the game that `n` robots play under a condition.
+        """Return the game of `n` robots under the condition of this name.
 
         Raises
         ------
         InputError
-            If there is no condition of that name, or `n` does not suit its proportions.
+            If the condition does not exist, or `n` does not suit its proportions.
         """
         by_name = {each.name: each for each in self.conditions}
         if condition not in by_name:
@@ -180,7 +141,7 @@ class Scenario(Checked):
         return by_name[condition].game(n)
 
     def allows(self, n: int) -> bool:
-        """Tell whether `n` robots can play under every condition."""
+        """Return whether `n` robots can play under every condition."""
         try:
             for condition in self.conditions:
                 condition.game(n)
@@ -189,19 +150,29 @@ class Scenario(Checked):
         return True
 
     def to_toml(self) -> str:
-        """Return the scenario as TOML, from which ``Scenario(**tomllib.loads(text))`` makes it again."""
-        return _toml(self._plain())
+        """Return the scenario as TOML, without default values."""
+        return tomlkit.dumps(self._plain())
 
     def _plain(self) -> dict[str, Any]:
-        return self.model_dump(mode="json", exclude_none=True)
+        plain = self.model_dump(mode="json", exclude_defaults=True)
+        plain["conditions"] = [_plain_condition(condition) for condition in self.conditions]
+        return plain
 
 
 def toml_of(scenarios: Iterable[Scenario]) -> str:
-    """Return several scenarios as one TOML document, each an element of its array ``scenarios``."""
-    return _toml({"scenarios": [scenario._plain() for scenario in scenarios]})
+    """Return several scenarios as one TOML document: its array ``scenarios``."""
+    return tomlkit.dumps({"scenarios": [scenario._plain() for scenario in scenarios]})
 
 
-def _toml(content: dict[str, Any]) -> str:
-    import tomlkit  # here: nothing but `kswarms show` needs it
+def _plain_condition(condition: Condition) -> dict[str, Any]:
+    """Return the values that differ from the defaults, with names of presets, in the order of TOML."""
+    plain = condition.model_dump(mode="json", exclude_defaults=True)
+    if "parameters" in plain:
+        plain["parameters"] = text_of(condition.parameters)
+    if BODIES.get(condition.body.name) == condition.body and "body" in plain:
+        plain["body"] = condition.body.name
+    return dict(sorted(plain.items(), key=lambda item: (_is_table(item[1]), item[0] != "name")))
 
-    return tomlkit.dumps(content)
+
+def _is_table(value: object) -> bool:
+    return isinstance(value, dict) or (isinstance(value, list) and isinstance(value[0], dict))

@@ -9,7 +9,7 @@ from kswarms.agents.learning.selection_rules import RULES
 from kswarms.agents.policies.registry import parts
 from kswarms.agents.user_code.syntax import parse_call
 from kswarms.model.description.game import Game
-from kswarms.model.description.parameters import PRESETS, Parameters, parse_parameters
+from kswarms.model.description.parameters import parse_parameters, text_of
 from kswarms.scenarios.description.scenario import Condition, SwarmRule
 
 
@@ -63,7 +63,8 @@ class Form(NamedTuple):
             seed=seed,
             puck_limit=condition.puck_limit or 0,
             supply=condition.supply or 0,
-            **{name: getattr(condition, name) for name in _SHARED},
+            **{name: getattr(condition, name) for name in _SHARED}
+            | {"parameters": text_of(condition.parameters), "body": condition.body.name},
         )
 
     @classmethod
@@ -74,7 +75,7 @@ class Form(NamedTuple):
             n=game.size,
             seed=seed,
             layout=game.layout,
-            body=game.body,
+            body=game.body.name,
             parameters=text_of(game.parameters),
             actions=game.actions,
             learning=game.learning,
@@ -121,16 +122,6 @@ class Form(NamedTuple):
 
 
 _SHARED: Final = ("layout", "body", "parameters", "actions", "learning", "duration", "multiple_of")
-
-
-def text_of(parameters: Parameters) -> str:
-    """Return the shortest text from which `parse_parameters` makes these parameters again."""
-    texts = []
-    for preset, defaults in PRESETS.items():
-        given = dict(parameters)
-        changes = [f"{name}={given[name]}" for name, value in dict(defaults).items() if given[name] != value]
-        texts.append(", ".join([preset, *changes]))
-    return min(texts, key=len)
 
 
 def with_parameter(text: str, name: str, value: float) -> str:

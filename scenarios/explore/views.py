@@ -3,16 +3,21 @@
 from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
-from kswarms.analysis.colours import swarm_colour
+from kswarms.analysis.film.painter import SWARM_COLOURS
 from kswarms.scenarios.watch.player import Player, Sample
 
 Json = dict[str, Any]
 
 
+def colour_of(swarm: int) -> str:
+    """Return the colour of a swarm, counted from 0."""
+    return SWARM_COLOURS[swarm % len(SWARM_COLOURS)]
+
+
 def scene_of(player: Player) -> Json:
     """Return what of the picture does not change during a game; lengths in metres, angles in radians."""
     model, game = player.model, player.game
-    arena, body, parameters = model.arena, game.body_preset, game.parameters
+    arena, body, parameters = model.arena, game.body, game.parameters
     return {
         "half": arena.half,
         "stations": arena.stations.tolist(),
@@ -22,7 +27,7 @@ def scene_of(player: Player) -> Json:
         "radius": body.radius,
         "conflictReach": body.radius + body.sensing_scale * parameters.conflict_distance,
         "frontHalfAngle": parameters.front_half_angle,
-        "colours": [swarm_colour(k + 1) for k in range(len(game.swarms))],
+        "colours": [colour_of(k) for k in range(len(game.swarms))],
     }
 
 
@@ -106,7 +111,7 @@ def _line(name: str, swarm: int, times: Sequence[float], values: Sequence[float]
         "type": "line",
         "symbol": "none",
         "animation": False,
-        "color": swarm_colour(swarm + 1),
+        "color": colour_of(swarm),
         "lineStyle": {"type": dash, "width": 2},
         "data": [[round(time, 1), round(value, 4)] for time, value in zip(times, values, strict=True)],
     }

@@ -116,9 +116,8 @@ class Player:
         self._start()
 
     def _start(self) -> None:
-        self.model = GameModel(
-            self.game, seed=self.seed, record="conflicts", sample_period=self.game.parameters.period
-        )
+        game = self.game.replace(sample_period=self.game.parameters.period)
+        self.model = GameModel(game, seed=self.seed, record="conflicts")
         self._accounts = Accounts(self.model)
         self.conflicts: deque[ConflictAccount] = deque(maxlen=MOST_CONFLICTS)
         self._interval = self.model.habits.periods(FIRST_INTERVAL)

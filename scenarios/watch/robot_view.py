@@ -126,7 +126,7 @@ def look_into(model: GameModel, number: int) -> RobotView | None:
 
 
 def _sensors(model: GameModel, index: int) -> tuple[Sensor, ...]:
-    body, parameters = model.game.body_preset, model.game.parameters
+    body, parameters = model.game.body, model.game.parameters
     reach = body.sensor_range
     row = model.fleet.robots[index]
     free = np.empty(SENSORS)

@@ -36,7 +36,7 @@ def play(what: Game, seed: int = 0, record: str = "conflicts,robots,trajectory")
 
 
 def at_the_switch(what: Game, seed: int = 0, record: str = "conflicts") -> GameModel:
-    model = GameModel(what, seed, record, sample_period=what.learning)
+    model = GameModel(what.replace(sample_period=what.learning), seed, record)
     model.step()
     assert model.phase == "game"
     return model

@@ -162,7 +162,7 @@ def test_a_leg_takes_its_draw_in_whole_periods_rounded_up(monkeypatch: pytest.Mo
 
 
 def test_a_sample_sees_the_world_as_the_last_period_left_it() -> None:
-    model = GameModel(make_game(), seed=SEED, record="trajectory,conflicts", sample_period=0.1)
+    model = GameModel(make_game().replace(sample_period=0.1), seed=SEED, record="trajectory,conflicts")
     model.play()
     tables = model.tables()
     in_action = set()
@@ -232,8 +232,8 @@ def test_a_game_that_is_over_stays_so(puck_limit: int | None) -> None:
     ],
 )
 def test_a_step_is_one_sampling_period(duration: float, sample_period: float, times: list[float]) -> None:
-    game = make_game().replace(duration=duration)
-    model = GameModel(game, seed=SEED, record="model", sample_period=sample_period)
+    game = make_game().replace(duration=duration, sample_period=sample_period)
+    model = GameModel(game, seed=SEED, record="model")
     for time in times[1:]:
         assert model.ended == ""
         model.step()

@@ -38,7 +38,7 @@ GAMES = {
 def digest(job: tuple[str, int]) -> str:
     """Play a game with everything recorded, and return a digest of every byte that comes out."""
     name, seed = job
-    model = GameModel(GAMES[name], seed, record=ALL, sample_period=5.0)
+    model = GameModel(GAMES[name].replace(sample_period=5.0), seed, record=ALL)
     model.play()
     outcome = model.results(), model.tables(), model.datacollector.model_vars
     # By way of text, since pickle also writes down which equal objects are one and the same.
@@ -76,7 +76,7 @@ def test_global_generators_are_neither_used_nor_moved() -> None:
 @pytest.mark.parametrize(("record", "sample_period"), [("", 10.0), ("model", 0.1), (ALL, 3.7), (ALL, 1e9)])
 def test_looking_does_not_change_the_game(name: str, record: str, sample_period: float) -> None:
     game = GAMES[name]
-    plain, watched = GameModel(game, 7), GameModel(game, 7, record, sample_period)
+    plain, watched = GameModel(game, 7), GameModel(game.replace(sample_period=sample_period), 7, record)
     plain.env.run()
     watched.play()
     assert watched.results() == plain.results()

@@ -26,15 +26,15 @@ BETA = {(k, m): 1.0 + 0.1 * k + 0.01 * m for k in (1, 2, 3) for m in (1, 2, 3)}
 TRIO = (Swarm(policy="avoid", size=5), Swarm(policy="attack", size=6), Swarm(policy="mixed", size=4))
 
 
-def played(game: Game, record: str = "conflicts", sample_period: float = 10.0) -> GameModel:
-    model = GameModel(game, seed=5, record=record, sample_period=sample_period)
+def played(game: Game, record: str = "conflicts") -> GameModel:
+    model = GameModel(game, seed=5, record=record)
     model.play()
     return model
 
 
 def test_utilities_are_those_of_the_states_that_were_sampled() -> None:
     # With a sample in each period the states themselves tell how long each robot was in A and in P.
-    model = played(Game(swarms=TRIO, duration=40.0), "conflicts,trajectory", sample_period=0.1)
+    model = played(Game(swarms=TRIO, duration=40.0, sample_period=0.1), "conflicts,trajectory")
     tables = model.tables()
     conflicts, states = pd.DataFrame(tables["conflicts"]), pd.DataFrame(tables["trajectory"])
     in_a = states.pivot(index="time", columns="robot", values="state").to_numpy() == "A"

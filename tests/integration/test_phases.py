@@ -44,7 +44,7 @@ def play(what: Game, seed: int = 0, record: str = "conflicts,robots") -> GameMod
 
 def at_the_switch(what: Game, seed: int = 0, record: str = "conflicts,robots") -> GameModel:
     """Play the learning alone; the measured game has begun, but no robot has decided or moved in it."""
-    model = GameModel(what, seed, record=record, sample_period=what.learning)
+    model = GameModel(what.replace(sample_period=what.learning), seed, record=record)
     model.step()
     assert (model.env.now, model.phase) == (SWITCH, "game")
     return model
@@ -83,10 +83,8 @@ def test_the_switch_changes_nothing_in_the_world(policies: str, preempt: bool) -
     """Two phases are the same world as one game of both their lengths, where nobody learns."""
     rest = {"supply": 9, "parameters": PRESETS["fitted"].replace(preempt=preempt)}
     phased = at_the_switch(game(*policies.split(","), **rest))
-    whole = GameModel(
-        game(*policies.split(","), learning=0.0, **{**rest, "duration": LEARNING + MEASURED}),
-        sample_period=LEARNING,
-    )
+    rest |= {"duration": LEARNING + MEASURED, "sample_period": LEARNING}
+    whole = GameModel(game(*policies.split(","), learning=0.0, **rest))
     whole.step()
     assert world(phased) == world(whole)
     # Something is under way that a new start would interrupt.
@@ -271,7 +269,7 @@ def test_a_puck_limit_counts_from_the_switch() -> None:
 
 
 def test_samples_show_both_phases() -> None:
-    model = GameModel(game("avoid", "learner"), record="model", sample_period=10.0)
+    model = GameModel(game("avoid", "learner"), record="model")
     model.play()
     frame = model.datacollector.get_model_vars_dataframe()
     assert frame["time"].tolist() == [10.0 * k for k in range(19)]
@@ -298,8 +296,8 @@ def test_same_seed_same_bytes(policies: str) -> None:
 
 
 def test_sampling_does_not_change_what_is_learned() -> None:
-    what = game("attack", "learner")
-    seen = [GameModel(what, 2, record=record, sample_period=0.7) for record in ("", "model,agents,conflicts")]
+    what = game("attack", "learner", sample_period=0.7)
+    seen = [GameModel(what, 2, record=record) for record in ("", "model,agents,conflicts")]
     for model in seen:
         model.play()
     learned = [[describe(robot.policy) for robot in model.robots] for model in seen]

@@ -217,10 +217,11 @@ def play_exchanged(game: Game, seed: int, exchange: Exchange) -> float:
     It must have been rounding.
     """
     twins = [exchange.twins(robot, game.size) for robot in range(game.size)]
-    model = GameModel(game, seed, sample_period=game.parameters.period)
+    game = game.replace(sample_period=game.parameters.period)
+    model = GameModel(game, seed)
     if exchange.swaps:
         game = game.replace(swarms=game.swarms[::-1])
-    image = GameModel(game, seed, sample_period=game.parameters.period)
+    image = GameModel(game, seed)
     put_twins(image, model, exchange)
     image_of = np.append(np.argsort(twins), -1)  # nobody stays nobody
     path = []

@@ -86,7 +86,7 @@ def test_bodies_stay_apart_and_inside(scene: Scene) -> None:
     scene.fleet.robots["carrying"] = 0
     for _ in range(10):
         drive(scene)
-        assert_apart(scene.fleet.positions, scene.game.body_preset.radius, scene.arena.half)
+        assert_apart(scene.fleet.positions, scene.game.body.radius, scene.arena.half)
 
 
 @settings(deadline=None, max_examples=300)

@@ -78,7 +78,7 @@ def every_period(model: GameModel) -> Iterator[None]:
 
 def check_bodies(model: GameModel, before: np.ndarray[Any, Any]) -> None:
     """Check that nobody overlaps, is outside, or was moved much farther than robots drive."""
-    positions, body = model.fleet.positions, model.game.body_preset
+    positions, body = model.fleet.positions, model.game.body
     if len(positions) > 1:
         assert pdist(positions).min() > 2 * body.radius - 1e-4
     assert np.abs(positions).max() <= model.arena.half - body.radius + ROUNDING
@@ -140,7 +140,7 @@ def check_results(model: GameModel) -> None:
     Game(swarms=(Swarm(policy="aggressive", size=25), Swarm(policy="aggressive", size=25)), duration=20.0), 0
 )
 def test_bodies_times_and_pucks_in_every_period(game: Game, seed: int) -> None:
-    model = GameModel(game, seed, sample_period=game.parameters.period)
+    model = GameModel(game.replace(sample_period=game.parameters.period), seed)
     before = model.fleet.positions.copy()
     for _ in every_period(model):
         check_bodies(model, before)
@@ -188,7 +188,7 @@ def longest_stay(model: GameModel, seconds: float, fights_count: bool) -> float:
     since, longest = np.full(len(start), now), np.zeros(len(start))
     for tick in range(now + 5, now + round(seconds / period) + 1, 5):
         model.env.run(until=tick)
-        free = np.hypot(*(positions - start).T) > model.game.body_preset.radius
+        free = np.hypot(*(positions - start).T) > model.game.body.radius
         if not fights_count:
             fights = (phase == ACTION) & fighter[everyone, swarm[opponent]]
             free |= fights

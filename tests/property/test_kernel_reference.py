@@ -84,7 +84,7 @@ def test_long_calls_use_the_neighbours_of_now() -> None:
     # Few robots, far apart: many periods in one call, in which everyone leaves the cells that the lists know.
     game = make_game("avoid,attack", 3, FITTED.replace(leg_mean=60, wall_distance=0.3), "krembot", 200)
     _, calls = play_compared(game, seed=3)
-    assert max(calls) * 0.015 > 10 * game.body_preset.radius
+    assert max(calls) * 0.015 > 10 * game.body.radius
 
 
 # ------------------------------------------------------------------------------ what the comparison must find

@@ -61,7 +61,7 @@ class ReferenceKernel:
     """Does what the compiled `Kernel` does, plainly; the robots' state is handed to each call."""
 
     def __init__(self, game: Game, arena: Arena) -> None:
-        parameters, body = game.parameters, game.body_preset
+        parameters, body = game.parameters, game.body
         self.parameters, self.arena, self.radius = parameters, arena, body.radius
         scale = body.radius / 0.085
         self.conflict_reach = 2 * body.radius + scale * parameters.conflict_distance

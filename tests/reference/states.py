@@ -80,8 +80,8 @@ def scenes(draw: st.DrawFn, largest: int = 60) -> Scene:
     """
     game = draw(games(largest))
     draws = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
-    n, radius = game.size, game.body_preset.radius
-    fastest = game.parameters.period * game.body_preset.top_speed * 0.6
+    n, radius = game.size, game.body.radius
+    fastest = game.parameters.period * game.body.top_speed * 0.6
     crowding = draw(st.sampled_from((0.0, 0.5, 0.95)))
     positions = crowd(draws, n, radius, game.side / 2, crowding, gap=2 * fastest)
     scene = make_scene(game, positions, draws.uniform(-math.pi, math.pi, n), 0.0)

@@ -23,6 +23,7 @@ def test_the_defaults() -> None:
     [
         ({"n": 7, "policies": "mixed"}, [("mixed", 7, 0.6, 0.6)]),
         ({"n": 7, "policies": " avoid , attack"}, [("avoid", 4, 0.6, 0.6), ("attack", 3, 0.6, 0.6)]),
+        ({"n": 7, "policies": ["avoid", "attack"]}, [("avoid", 4, 0.6, 0.6), ("attack", 3, 0.6, 0.6)]),
         (
             {"n": 13, "policies": "avoid,avoid", "shares": "7:6"},
             [("avoid", 7, 0.6, 0.6), ("avoid", 6, 0.6, 0.6)],
@@ -80,7 +81,7 @@ def test_a_number_of_numpy_will_do() -> None:
         ({"n": math.nan}, "n=nan: "),
         ({"n": "ten"}, "n='ten': "),
         ({"n": 300}, "n=300: robots of radius 0.085 m do not fit in a square of 2.0 m"),
-        ({"policies": ""}, "policy='': must be one of avoid"),
+        ({"policies": ""}, "policies='': must be a text or a sequence"),
         ({"policies": "avoid,flee"}, "policy='flee': must be one of avoid"),
         ({"shares": "7"}, "shares='7': must be 2 whole numbers"),
         ({"shares": "7:6:5"}, "shares='7:6:5': must be 2 whole numbers"),
@@ -96,7 +97,7 @@ def test_a_number_of_numpy_will_do() -> None:
         ({"drives": "0.7,-0.6"}, "drive='-0.6': must be greater than 0"),
         ({"drives": "0.7,nan"}, "drive='nan': must be a finite number"),
         ({"drives": "0.7,0.6/2"}, "drive_action='2': must be less than or equal to 1"),
-        ({"layout": "round"}, "layout='round': must be one of symmetric"),
+        ({"layout": "round"}, "layout='round': must be 'symmetric', 'nearer-station' or"),
         ({"body": "epuck"}, "body='epuck': must be one of krembot-sim"),
         ({"parameters": "fast"}, "parameters='fast': must begin with one of"),
         ({"parameters": "fitted, speed=3"}, "speed='3': no such field"),
@@ -114,23 +115,24 @@ def test_a_number_of_numpy_will_do() -> None:
         ({"seed": "7"}, "seed='7': must be a whole number"),
         ({"record": "video"}, "record='video': must be one of model, agents, conflicts, robots, trajectory"),
         ({"record": "model,video"}, "record='video': "),
-        ({"sample_period": 0}, "sample_period=0: must be a number of seconds > 0"),
+        ({"sample_period": 0}, "sample_period=0: must be greater than 0"),
         ({"sample_period": -1.0}, "sample_period=-1.0: "),
         ({"sample_period": math.nan}, "sample_period=nan: "),
         ({"sample_period": math.inf}, "sample_period=inf: "),
-        ({"sample_period": 1e308}, "sample_period=1e+308: must be a number of seconds > 0, ≤ 1e+09"),
+        ({"sample_period": 1e308}, "sample_period=1e+308: must be less than or equal to 1000000000"),
         ({"sample_period": "often"}, "sample_period='often': "),
         ({"parameters": "fitted, station_radius=1.5", "layout": "random-stations"}, "station_radius=1.5: "),
         ({"parameters": "fitted, wall_distance=1.5"}, "wall_distance=1.5: "),
         ({"parameters": "fitted, wall_clearance=1"}, "n=20: robots of radius 0.085 m do not fit in"),
         ({"parameters": "fitted, wall_clearance=9000"}, "n=20: robots of radius 0.085 m do not fit in"),
-        ({"policies": ["avoid", "attack"]}, "policies=['avoid', 'attack']: must be a text"),
-        ({"policies": None}, "policies=None: must be a text"),
+        ({"policies": None}, "policies=None: must be a text or a sequence"),
+        ({"policies": []}, "policies=[]: must be a text or a sequence"),
         ({"shares": 3}, "shares=3: must be a text"),
         ({"drives": 0.6}, "drives=0.6: must be a text"),
-        ({"parameters": None}, "parameters=None: must be a text"),
+        ({"parameters": None}, "parameters=None: must be a valid dictionary or"),
         ({"record": ["model"]}, "record=['model']: must be a text"),
         ({"seed": True}, "seed=True: must be a whole number"),
+        ({"robots": 3}, "robots=3: no such field; there are layout, stations, "),
     ],
 )
 def test_bad_input_is_one_line_with_field_value_and_what_is_allowed(
@@ -140,8 +142,3 @@ def test_bad_input_is_one_line_with_field_value_and_what_is_allowed(
         ForagingModel(**arguments)
     assert str(refusal.value).startswith(message)
     assert "\n" not in str(refusal.value)
-
-
-def test_an_argument_that_does_not_exist_is_refused() -> None:
-    with pytest.raises(TypeError, match="robots"):
-        ForagingModel(robots=3)  # type: ignore[call-arg]

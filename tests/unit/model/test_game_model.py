@@ -22,7 +22,7 @@ GAME = Game(
 
 
 def played(record: str = "", sample_period: float = 10.0, seed: int = 2) -> GameModel:
-    model = GameModel(GAME, seed, record, sample_period)
+    model = GameModel(GAME.replace(sample_period=sample_period), seed, record)
     model.play()
     return model
 
@@ -42,7 +42,7 @@ def test_what_the_limits_of_the_parameters_allow_can_be_played() -> None:
     times = dict.fromkeys(("flight_duration", "fight_duration", "leg_mean"), LONGEST)
     for rest in ({"turning_rate": SLOWEST_TURN}, {"turning_rate": 1e308}, {"leg_mean": 1e-308}):
         slow = PRESETS["fitted"].replace(period=SHORTEST_PERIOD, conflict_distance=0.5, **(times | rest))
-        model = GameModel(GAME.replace(parameters=slow, duration=1e-4), 2, "robots", LONGEST)
+        model = GameModel(GAME.replace(parameters=slow, duration=1e-4, sample_period=LONGEST), 2, "robots")
         model.play()
         assert model.ended == "time"
         assert sum(sum(robot.conflicts) for robot in model.robots) > 0

@@ -121,7 +121,8 @@ def test_a_conflict_has_no_program_time_if_the_next_begins_as_its_action_ends(sp
 def test_times_are_those_seen_from_outside(monkeypatch: pytest.MonkeyPatch, preempt: bool) -> None:
     """T(a): periods in state A from a conflict's start on; T(p): those in state P up to the next one."""
     monkeypatch.setitem(POLICIES, "spy", Kind(Spy))
-    model = GameModel(game("spy", preempt=preempt, learning=60.0), seed=1, sample_period=PERIOD)
+    what = game("spy", preempt=preempt, learning=60.0).replace(sample_period=PERIOD)
+    model = GameModel(what, seed=1)
     watched: dict[int, list[list[int]]] = {robot.index: [] for robot in model.members[1]}
     begun = dict.fromkeys(watched, 0)
     while model.phase == "learning" and not model.ended:

@@ -13,6 +13,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.figures import emergence, networks
 from kswarms.analysis.figures import heat_maps as maps
 from kswarms.analysis.figures.files import encoded
+from kswarms.analysis.figures.style import SAFE
 from kswarms.analysis.results import records
 from kswarms.model.description.arena import build_arena
 from tests.helpers.result_rows import MET, conflict, robots
@@ -117,7 +118,7 @@ def test_jams_refuse_what_has_no_answer() -> None:
 
 
 def test_the_network_is_drawn_with_a_line_for_each_pair_and_its_time_in_the_matrix() -> None:
-    figure = networks.network_figure(networks.meeting_network(MET), "title")
+    figure = networks.network_figure(networks.meeting_network(MET), "title", SAFE)
     circle, matrix, colours = figure.axes
     lines = sum(
         len(drawn.get_segments()) for drawn in circle.collections if isinstance(drawn, LineCollection)

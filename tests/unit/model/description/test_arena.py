@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from kswarms.agents.common.errors import InputError
-from kswarms.model.description.arena import LAYOUTS, Arena, base_positions, build_arena
+from kswarms.model.description.arena import Arena, base_positions, build_arena
+from kswarms.model.description.fields import LAYOUTS
 
 STATION_RADIUS, BASE_RADIUS = 0.16, 0.17
 LOWER_STATION = (0.0, -0.66)

@@ -11,13 +11,14 @@ from hypothesis import strategies as st
 
 from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.robot.body import BODIES
-from kswarms.model.description.arena import LAYOUTS
+from kswarms.agents.robot.body import BODIES, KREMBOT, Body
+from kswarms.model.description.fields import LAYOUTS
 from kswarms.model.description.game import Game, Swarm, apportion
 from kswarms.model.description.parameters import PRESETS
 
 AVOID = Swarm(policy="avoid", size=10)
 FITTED = PRESETS["fitted"]
+LARGE = {"radius": 0.1, "sensor_range": 0.5, "top_speed": 0.3}
 
 
 def game(**fields: Any) -> Game:
@@ -27,11 +28,11 @@ def game(**fields: Any) -> Game:
 def test_the_defaults_are_those_of_the_experiments() -> None:
     plain = game()
     assert (AVOID.drive, AVOID.drive_action) == (0.6, 0.6)
-    assert (plain.layout, plain.body, plain.side, plain.duration) == ("symmetric", "krembot-sim", 2.0, 600.0)
+    assert (plain.layout, plain.side, plain.duration) == ("symmetric", 2.0, 600.0)
     assert (plain.puck_limit, plain.supply, plain.parameters) == (None, None, FITTED)
     assert [action.name for action in plain.action_set] == ["flight", "fight"]
     assert plain.size == 20
-    assert plain.body_preset == BODIES["krembot-sim"]
+    assert plain.body == BODIES["krembot-sim"]
 
 
 def test_a_game_is_a_value() -> None:
@@ -60,6 +61,24 @@ def test_every_layout_has_an_arena(layout: str) -> None:
     assert arena.bases.shape == arena.stations.shape == (2, 2)
 
 
+def test_places_replace_those_of_the_layout() -> None:
+    arena = game(stations=[(0.0, 0.0)], side=4.0).arena(0)
+    assert arena.stations.tolist() == [[0.0, 0.0]]
+    assert arena.bases.tolist() == [[-1.6, 0.0], [1.6, 0.0]]
+    bases = [[0.0, 0.5], [0.0, -0.5]]
+    arena = game(bases=bases, layout="random-stations").arena(0)
+    assert arena.bases.tolist() == bases
+    assert arena.stations.shape == (2, 2)
+
+
+def test_presets_and_limits_have_short_forms() -> None:
+    assert game(body="krembot", parameters="argos, friction=0.1, period=0.05") == game(
+        body=KREMBOT, parameters=PRESETS["argos"].replace(friction=0.1, period=0.05)
+    )
+    assert game(body=LARGE).body == Body(**LARGE)
+    assert game(puck_limit=0, supply=0) == game()
+
+
 @pytest.mark.parametrize(
     ("fields", "message"),
     [
@@ -86,7 +105,7 @@ def test_every_layout_has_an_arena(layout: str) -> None:
         ({"swarms": ({"policy": "avoid", "size": 2, "drive_action": -1},)}, "swarms.0.drive_action=-1: "),
         ({"swarms": (AVOID, {"policy": "flee", "size": 2})}, "policy='flee': must be one of avoid, attack"),
         ({"swarms": ({"size": 2},)}, "swarms.0.policy=None: is required"),
-        ({"layout": "round"}, "layout='round': must be one of symmetric, nearer-station, random-stations"),
+        ({"layout": "round"}, "layout='round': must be 'symmetric', 'nearer-station' or 'random-stations'"),
         ({"body": "epuck"}, "body='epuck': must be one of krembot-sim, krembot, "),
         ({"absent": (20,)}, "absent=20: must be a robot of the game, 0 to 19"),
         ({"absent": (3, -1)}, "absent=-1: must be a robot of the game, 0 to 19"),
@@ -101,12 +120,20 @@ def test_every_layout_has_an_arena(layout: str) -> None:
         ({"duration": -600}, "duration=-600: "),
         ({"duration": math.nan}, "duration=nan: "),
         ({"duration": math.inf}, "duration=inf: "),
-        ({"puck_limit": 0}, "puck_limit=0: must be greater than or equal to 1"),
-        ({"puck_limit": -1}, "puck_limit=-1: "),
-        ({"supply": 0}, "supply=0: "),
+        ({"puck_limit": -1}, "puck_limit=-1: must be greater than or equal to 1"),
         ({"supply": 2.5}, "supply=2.5: "),
         ({"parameters": {"friction": -1}}, "parameters.friction=-1: "),
-        ({"speed": 1}, "speed=1: no such field; there are swarms, layout, "),
+        ({"speed": 1}, "speed=1: no such field; there are layout, stations, "),
+        ({"body": {"radius": 0.1}}, "body.sensor_range=None: is required"),
+        ({"body": {**LARGE, "radius": 0}}, "body.radius=0: must be greater than or equal to 0.001"),
+        ({"stations": [(0.0, 0.9)]}, "station 1=[0.0, 0.9]: with radius 0.16 m must lie inside the walls"),
+        ({"stations": [(0.8, 0.1)]}, "station 1=[0.8, 0.1]: with radius 0.16 m must not overlap base 2"),
+        ({"stations": [(0.0, 0.0)] * 2}, "station 2=[0.0, 0.0]: with radius 0.16 m must not overlap stati"),
+        ({"stations": [0.0]}, "stations.0=0.0: must be a valid tuple"),
+        ({"stations": [(0.0, math.nan)]}, "stations.0.1=nan: must be a finite number"),
+        ({"stations": [(0.0, 0.0)], "layout": "random-stations"}, "stations=((0.0, 0.0),): must not be giv"),
+        ({"bases": [(0.5, 0.0)]}, "bases=((0.5, 0.0),): must be 2 places, one per swarm"),
+        ({"bases": [(0.5, 0.0), (0.6, 0.0)]}, "base 2=[0.6, 0.0]: with radius 0.17 m must not overlap base"),
         (
             {"actions": ({"name": "a", "direction": 1, "duration": 1},) * 2},
             "actions=['a', 'a']: must have different names",

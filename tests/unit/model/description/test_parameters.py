@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from kswarms.agents.common.errors import InputError
-from kswarms.model.description.parameters import PRESETS, Parameters, parse_parameters
+from kswarms.model.description.parameters import PRESETS, Parameters, parse_parameters, text_of
 
 FITTED, ARGOS = PRESETS["fitted"], PRESETS["argos"]
 
@@ -151,3 +151,10 @@ def test_a_number_below_its_range_is_refused(name: str, value: float, least: str
     with pytest.raises(InputError) as refusal:
         Parameters(**{name: value})
     assert str(refusal.value) == f"{name}={value}: must be greater than or equal to {least}"
+
+
+@pytest.mark.parametrize(
+    "text", ["fitted", "argos", "fitted, friction=0.3, preempt=True", "argos, wall_escape=clear"]
+)
+def test_the_shortest_text_of_parameters(text: str) -> None:
+    assert text_of(parse_parameters(text)) == text

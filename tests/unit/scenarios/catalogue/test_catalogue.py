@@ -12,6 +12,7 @@ from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.learner import Learner
 from kswarms.agents.policies.registry import make_policy
 from kswarms.agents.streams import Streams
+from kswarms.model.description.parameters import text_of
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.builders import learner, reward_of, rule_of
 from kswarms.scenarios.description.scenario import Scenario
@@ -236,9 +237,9 @@ def test_the_protocol_is_that_of_the_source(scenario: Scenario) -> None:
         layouts = dict.fromkeys(nearer, "nearer-station")
         layouts |= {f"fig-6.13{letter}": "random-stations" for letter in "abcd"}
         assert condition.layout == layouts.get(scenario.id, "symmetric")
-        assert condition.body == ("argos-footbot" if is_argos else "krembot-sim")
+        assert condition.body.name == ("argos-footbot" if is_argos else "krembot-sim")
         fitted = "fitted, period=0.05" if scenario.id == "fig-6.15" else "fitted"
-        assert condition.parameters == ("argos" if is_argos else fitted)
+        assert text_of(condition.parameters) == ("argos" if is_argos else fitted)
         shares = tuple(rule.share for rule in condition.swarms)
         several = {"fig-7.10": (1, 2, 1), "fig-7.11": (1, 2, 1), "fig-6.15": (1,)}
         assert shares == ((7, 6) if few else several.get(scenario.id, (1, 1)))

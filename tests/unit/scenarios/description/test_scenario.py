@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.robot.body import KREMBOT
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.description.scenario import Condition, Scenario, SwarmRule, toml_of
 
@@ -69,10 +70,14 @@ def test_without_an_exception_the_proportions_hold_exactly(shares: list[int], ti
 
 def test_a_game_has_everything_its_condition_says() -> None:
     flee = Action(name="flee", direction=-1, duration=0.5)
+    places = ((0.0, 0.5), (0.0, -0.5), (0.0, 0.0))
     push = Action(name="push", direction=1, duration=2.0)
     game = Condition(
         swarms=(SwarmRule(policy="flee", drive=0.7, drive_action=0.5), SwarmRule(policy="attack")),
-        layout="nearer-station",
+        side=2.5,
+        stations=places,
+        bases=((-0.9, 0.0), (0.9, 0.1)),
+        sample_period=2.0,
         body="krembot",
         parameters="argos, period=0.05, friction=0.25, preempt=true, wall_escape=clear",
         actions=(flee, push),
@@ -84,7 +89,9 @@ def test_a_game_has_everything_its_condition_says() -> None:
     first, second = game.swarms
     assert (first.policy, first.size, first.drive, first.drive_action) == ("flee", 4, 0.7, 0.5)
     assert (second.policy, second.size, second.drive, second.drive_action) == ("attack", 4, 0.6, 0.6)
-    assert (game.layout, game.body, game.actions) == ("nearer-station", "krembot", (flee, push))
+    assert (game.side, game.sample_period) == (2.5, 2.0)
+    assert (game.stations, game.bases) == (places, ((-0.9, 0.0), (0.9, 0.1)))
+    assert (game.body, game.actions) == (KREMBOT, (flee, push))
     assert (game.learning, game.duration, game.puck_limit, game.supply) == (900.0, 120.0, 9, 30)
     changed = (game.parameters.friction, game.parameters.preempt, game.parameters.wall_escape)
     assert changed == (0.25, True, "clear")
@@ -120,8 +127,8 @@ def test_a_scenario_that_makes_no_sense_is_refused(changes: dict[str, object], f
     "world",
     [
         {"swarms": (SwarmRule(policy="dance"), AVOID)},
-        {"swarms": (SwarmRule(policy="avoid", drive=-0.6), AVOID)},
-        {"swarms": (SwarmRule(policy="avoid", drive_action=0.0), AVOID)},
+        {"swarms": ({"policy": "avoid", "drive": -0.6}, AVOID)},
+        {"swarms": ({"policy": "avoid", "drive_action": 0.0}, AVOID)},
         {"layout": "round"},
         {"body": "roomba"},
         {"parameters": "best"},
@@ -131,7 +138,7 @@ def test_a_scenario_that_makes_no_sense_is_refused(changes: dict[str, object], f
         {"duration": 0.0},
         {"learning": -1.0},
         {"learning": math.inf},
-        {"puck_limit": 0},
+        {"puck_limit": -1},
         {"supply": -1},
         {"actions": (Action(name="push", direction=1, duration=1.0),)},  # avoid needs a flight
     ],
@@ -210,6 +217,25 @@ def test_descriptions_cannot_be_changed() -> None:
 @pytest.mark.parametrize("scenario", CATALOGUE.values(), ids=CATALOGUE)
 def test_toml_holds_the_whole_scenario(scenario: Scenario) -> None:
     assert Scenario(**tomllib.loads(scenario.to_toml())) == scenario
+
+
+def test_toml_holds_every_field_and_no_defaults() -> None:
+    condition = with_shares(2, 1, side=3.0, parameters="argos, period=0.05", sample_period=1.0).replace(
+        stations=[(0.0, 0.5)], body={"radius": 0.05, "sensor_range": 0.4, "top_speed": 0.2}
+    )
+    scenario = Scenario(id="own", title="Own", conditions=(condition,), densities=(6,))
+    text = scenario.to_toml()
+    assert Scenario(**tomllib.loads(text)) == scenario
+    assert tomllib.loads(text)["conditions"] == [
+        {
+            "stations": [[0.0, 0.5]],
+            "side": 3.0,
+            "parameters": "argos, period=0.05",
+            "sample_period": 1.0,
+            "swarms": [{"policy": "avoid", "share": 2}, {"policy": "avoid"}],
+            "body": {"radius": 0.05, "sensor_range": 0.4, "top_speed": 0.2},
+        }
+    ]
 
 
 def test_toml_holds_several_scenarios() -> None:

@@ -4,14 +4,13 @@ import pytest
 
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.user_code.syntax import parse_call
-from kswarms.model.description.parameters import PRESETS, parse_parameters
+from kswarms.model.description.parameters import PRESETS
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.explore.form import (
     Form,
     SwarmForm,
     learning_of,
-    text_of,
     with_learning,
     with_parameter,
 )
@@ -37,13 +36,6 @@ def test_a_form_may_say_what_is_not_allowed_until_a_game_is_made_of_it() -> None
         with pytest.raises(InputError, match=field):
             form.with_swarm(1, **{field: other}).game()
     assert form.with_swarm(1, policy="mixed").game().swarms[1].policy == "mixed"
-
-
-@pytest.mark.parametrize(
-    "text", ["fitted", "argos", "fitted, friction=0.3, preempt=True", "argos, wall_escape=clear"]
-)
-def test_parameters_are_written_as_short_as_they_can_be_read(text: str) -> None:
-    assert text_of(parse_parameters(text)) == text
 
 
 def test_a_parameter_is_named_only_where_the_preset_has_another_value() -> None:

@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from kswarms.agents.policies.saved import save
-from kswarms.model.description.parameters import PRESETS
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.runs import run as module
 from kswarms.scenarios.runs.run import code_version, describe_curve, digest, expand
@@ -142,15 +141,12 @@ def test_effort_grows_with_robots_time_learning_and_finer_periods() -> None:
     assert len(set(efforts)) == len(by_effort)
 
 
-def test_a_curve_is_described_by_what_the_name_of_its_parameters_stands_for(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_curve_is_described_by_everything_but_the_number_of_robots() -> None:
     condition = CATALOGUE["fig-6.1c"].conditions[0]
     described = describe_curve(condition, 6)
     assert described == describe_curve(condition, 50)
     assert described != describe_curve(condition.replace(duration=601.0), 6)
-    monkeypatch.setitem(PRESETS, "fitted", PRESETS["fitted"].replace(friction=0.9))
-    assert described != describe_curve(condition, 6)
+    assert described != describe_curve(condition.replace(parameters="fitted, friction=0.9"), 6)
 
 
 def test_the_code_is_named_by_the_version_and_what_it_is() -> None:

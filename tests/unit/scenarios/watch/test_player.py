@@ -175,7 +175,7 @@ def test_a_robot_is_seen_as_it_is() -> None:
         assert len(view.sensors) == 8
         limit = model.game.parameters.active_range
         assert all(sensor.active == (sensor.free <= limit) for sensor in view.sensors)
-        assert all(sensor.free <= model.game.body_preset.sensor_range for sensor in view.sensors)
+        assert all(sensor.free <= model.game.body.sensor_range for sensor in view.sensors)
     learner, fighter = look_into(model, 7), look_into(model, 0)
     assert (list(learner.bandits), learner.learning, learner.rule) == ([1], True, "UCB(gamma=0.1211)")
     assert [arm.action for arm in learner.bandits[1]] == ["flight", "fight"]

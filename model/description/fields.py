@@ -1,0 +1,103 @@
+"""Fields of a game that do not depend on the number of robots. `Game` and scenario conditions extend them."""
+
+from typing import Any, Final, Literal, get_args
+
+from pydantic import Field, model_validator
+
+from kswarms.agents.actions import LONGEST, Action
+from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.robot.body import BODIES, Body
+from kswarms.model.description.parameters import FARTHEST, PRESETS, Parameters, parse_parameters
+
+Layout = Literal["symmetric", "nearer-station", "random-stations"]
+LAYOUTS: Final[tuple[Layout, ...]] = get_args(Layout)
+Place = tuple[float, float]
+
+MOST_PUCKS: Final = 10**9
+"""Maximum of `puck_limit` and `supply`."""
+MOST_PLACES: Final = 1000
+"""Maximum number of stations, and of bases."""
+
+
+class SwarmFields(Checked):
+    """Fields of a swarm that do not depend on its size.
+
+    Attributes
+    ----------
+    policy : str
+        Policy of its robots, or several, dealt out (see `kswarms.agents.policies.registry.deal`).
+    drive, drive_action : float
+        Drive command in state P and in state A, as a fraction of the top speed.
+    """
+
+    policy: str = Field(min_length=1)
+    drive: float = Field(0.6, gt=0, le=1)
+    drive_action: float = Field(0.6, gt=0, le=1)
+
+
+class GameFields(Checked):
+    """Fields of a game that do not depend on the number of robots.
+
+    Attributes
+    ----------
+    layout : {'symmetric', 'nearer-station', 'random-stations'}
+        Placement of stations and bases; it scales with `side`.
+    stations : tuple of (float, float)
+        Centres of the stations (m), in place of those of the layout; the origin is the middle of the arena.
+    bases : tuple of (float, float)
+        Centres of the bases, one per swarm (m), in place of those of the layout.
+    side : float
+        Side of the arena (m).
+    body : Body
+        Body of the robots, or the name of one of `kswarms.agents.robot.body.BODIES`.
+    parameters : Parameters
+        Free parameters of the world, or their text (see `parse_parameters`).
+    actions : tuple of Action
+        Actions of a robot in a conflict; empty for flight and fight with the durations of the parameters.
+    supply : int, optional
+        Pucks at each station; None or 0 for no limit.
+    learning : float
+        Duration of the learning phase before the measured game, in the same world (s). With 0, learners learn
+        during the measured game.
+    duration : float
+        Duration of the measured game (s); its maximum if there is a puck limit.
+    puck_limit : int, optional
+        Number of deposited pucks, over all swarms, that ends the game; None or 0 for no limit.
+    sample_period : float
+        Time between two samples of the recorded tables (s).
+    """
+
+    layout: Layout = "symmetric"
+    stations: tuple[Place, ...] = Field((), max_length=MOST_PLACES)
+    bases: tuple[Place, ...] = Field((), max_length=MOST_PLACES)
+    side: float = Field(2.0, gt=0, le=FARTHEST)
+    body: Body = BODIES["krembot-sim"]
+    parameters: Parameters = PRESETS["fitted"]
+    actions: tuple[Action, ...] = ()
+    supply: int | None = Field(None, ge=1, le=MOST_PUCKS)
+    learning: float = Field(0.0, ge=0)
+    duration: float = Field(600.0, gt=0)
+    puck_limit: int | None = Field(None, ge=1, le=MOST_PUCKS)
+    sample_period: float = Field(10.0, gt=0, le=LONGEST)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _resolve_shorthands(cls, values: Any) -> Any:
+        if not isinstance(values, dict):
+            return values
+        values = dict(values)
+        if isinstance(text := values.get("parameters"), str):
+            values["parameters"] = parse_parameters(text)
+        if isinstance(name := values.get("body"), str):
+            if name not in BODIES:
+                raise InputError("body", name, f"must be one of {', '.join(BODIES)}, or a body as numbers")
+            values["body"] = BODIES[name]
+        for name in ("puck_limit", "supply"):
+            if values.get(name) == 0 and not isinstance(values[name], bool):
+                values[name] = None
+        return values
+
+    def game_fields(self) -> dict[str, Any]:
+        """Return the fields of this class alone, without those of a subclass."""
+        return {name: getattr(self, name) for name in GameFields.model_fields}
