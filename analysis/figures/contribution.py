@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from kswarms.analysis.figures.files import save
-from kswarms.analysis.figures.style import DETAILED, Form, brief, heading, legend_below, sheet
+from kswarms.analysis.figures.style import LineStyle, brief, heading, legend_below, sheet, swarm_style
 from kswarms.analysis.measures.contribution import (
     MEASURES,
     QUANTITIES,
@@ -48,9 +48,9 @@ def scatter(rows: pd.DataFrame, title: str = "") -> Figure:
         for axes, measure in zip(panels, measures, strict=True):
             axes.axhline(0, color="0.4", linewidth=1)
             for swarm in sorted(set(rows["swarm"])):
-                form = DETAILED.of_swarm(swarm)
+                style = swarm_style(swarm)
                 of_swarm = robots[(robots["swarm"] == swarm) & (robots["robot"] >= 0)]
-                _draw_swarm(axes, rows[rows["swarm"] == swarm], of_swarm, measure, form)
+                _draw_swarm(axes, rows[rows["swarm"] == swarm], of_swarm, measure, style)
             axes.set_title(_title(correlations[correlations["measure"] == measure]), fontsize="small")
             axes.set_xlabel("reward that the robot computes in a game (s)")
             axes.set_ylabel(f"change of its swarm's SUD by the robot ({MEASURES[measure]})")
@@ -59,19 +59,21 @@ def scatter(rows: pd.DataFrame, title: str = "") -> Figure:
     return figure
 
 
-def _draw_swarm(axes: Axes, games: pd.DataFrame, robots: pd.DataFrame, measure: str, form: Form) -> None:
+def _draw_swarm(
+    axes: Axes, games: pd.DataFrame, robots: pd.DataFrame, measure: str, style: LineStyle
+) -> None:
     if games["seed"].nunique() > 1:
-        axes.scatter(games["reward"], games[measure], s=7, color=form.colour, alpha=0.25, linewidths=0)
+        axes.scatter(games["reward"], games[measure], s=7, color=style.colour, alpha=0.25, linewidths=0)
     axes.errorbar(
         robots["reward"],
         robots[measure],
         xerr=_reach(robots, "reward"),
         yerr=_reach(robots, measure),
         label=f"S{robots['swarm'].iloc[0]}: {', '.join(dict.fromkeys(map(brief, games['policy'])))}",
-        color=form.colour,
+        color=style.colour,
         linestyle="none",
-        marker=form.marker,
-        markerfacecolor=form.colour if form.filled else "white",
+        marker=style.marker,
+        markerfacecolor=style.colour if style.filled else "white",
         elinewidth=0.8,
     )
 

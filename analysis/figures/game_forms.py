@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from kswarms.agents.theory.games import MET, NATURE, OWN, NormalForm
-from kswarms.analysis.figures.style import DETAILED
+from kswarms.analysis.colours import swarm_colour
 
 _DECIDES: Final = {
     NATURE: ("o", 9, "0.35"),
@@ -121,7 +121,7 @@ def _draw_graph(axes: Axes, graph: nx.Graph) -> None:
         )
         shown.add(zero_sum)
     for k, swarm in enumerate(swarms):
-        colour = DETAILED.of_swarm(k + 1).colour
+        colour = swarm_colour(k + 1)
         axes.plot(*place[swarm], "o", color=colour, markersize=24, zorder=3)
         axes.text(
             *place[swarm], f"S{swarm}", ha="center", va="center", color="white", weight="bold", zorder=4

@@ -1,7 +1,5 @@
 """Where conflicts happen: heat maps of rows of `conflicts.parquet`, or of a DataCollector's table."""
 
-from typing import Any, Protocol
-
 import numpy as np
 import pandas as pd
 from matplotlib import colormaps
@@ -11,34 +9,12 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.figures.style import DETAILED, Look, sheet
+from kswarms.analysis.colours import swarm_colour
+from kswarms.analysis.figures.style import sheet
+from kswarms.analysis.film.painter import Places
 
 CELL = 0.05
 """Side of a cell of a heat map (m)."""
-
-
-class Places(Protocol):
-    """Where stations and bases are: `kswarms.model.description.arena.Arena` is one, lengths in m."""
-
-    @property
-    def half(self) -> float:
-        """Half the side of the arena."""
-
-    @property
-    def stations(self) -> Any:
-        """Middles of the stations, shape (S, 2)."""
-
-    @property
-    def bases(self) -> Any:
-        """Middles of the bases, shape (K, 2)."""
-
-    @property
-    def station_radius(self) -> float:
-        """Radius of the stations."""
-
-    @property
-    def base_radius(self) -> float:
-        """Radius of the bases."""
 
 
 def density(conflicts: pd.DataFrame, half: float = 1.0) -> np.ndarray:
@@ -63,9 +39,7 @@ def density(conflicts: pd.DataFrame, half: float = 1.0) -> np.ndarray:
     return np.asarray(counts / max(games, 1))
 
 
-def heat_maps(
-    conflicts: pd.DataFrame, title: str = "", places: Places | None = None, look: Look = DETAILED
-) -> Figure:
+def heat_maps(conflicts: pd.DataFrame, title: str = "", places: Places | None = None) -> Figure:
     """Draw where conflicts happen: all of them, and those with each action.
 
     Parameters
@@ -76,8 +50,6 @@ def heat_maps(
         What it is of.
     places : Places, optional
         Stations and bases to be drawn in.
-    look : Look
-        Colours of the bases.
 
     Returns
     -------
@@ -121,19 +93,19 @@ def heat_maps(
             axes.label_outer()
             axes.grid(False)
             if places is not None:
-                _draw_places(axes, places, look)
+                _draw_places(axes, places)
         figure.colorbar(image, ax=panels, shrink=0.8, label=f"conflicts begun in {side} × {side} cm, a game")
     return figure
 
 
-def _draw_places(axes: Axes, places: Places, look: Look) -> None:
+def _draw_places(axes: Axes, places: Places) -> None:
     for station in places.stations:
         axes.add_patch(
             Circle(tuple(station), places.station_radius, fill=False, color="white", linewidth=1.5)
         )
         axes.annotate("station", station, color="white", ha="center", va="center", fontsize="small")
     for index, base in enumerate(places.bases):
-        colour = look.of_swarm(index + 1).colour
+        colour = swarm_colour(index + 1)
         axes.add_patch(Circle(tuple(base), places.base_radius, fill=False, color="white", linewidth=3))
         axes.add_patch(Circle(tuple(base), places.base_radius, fill=False, color=colour, linewidth=1.5))
         axes.annotate(f"S{index + 1}", base, color="white", ha="center", va="center", fontsize="small")

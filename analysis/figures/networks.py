@@ -17,7 +17,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.figures.style import DETAILED, Look, legend_below, sheet
+from kswarms.analysis.colours import swarm_colour
+from kswarms.analysis.figures.style import CONDITION_COLOURS, legend_below, sheet
 
 _SMOOTHED = 15
 """Moments that a thick line of jams is the mean of."""
@@ -201,7 +202,7 @@ def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:
     )
 
 
-def network_figure(network: nx.Graph, title: str = "", look: Look = DETAILED) -> Figure:
+def network_figure(network: nx.Graph, title: str = "") -> Figure:
     """Draw who met whom: robots around a circle, swarm by swarm, and the time of each pair as a matrix.
 
     Parameters
@@ -210,8 +211,6 @@ def network_figure(network: nx.Graph, title: str = "", look: Look = DETAILED) ->
         As `meeting_network` returns it, with at least one edge.
     title : str
         What it is of.
-    look : Look
-        Colours.
 
     Returns
     -------
@@ -240,7 +239,7 @@ def network_figure(network: nx.Graph, title: str = "", look: Look = DETAILED) ->
             circle.plot([], [], color=colour, linewidth=3, label=f"{kind}-swarm meetings")
         for name in sorted(set(swarm.values())):
             of_swarm = [robot for robot in order if swarm[robot] == name]
-            colour = look.of_swarm(name).colour
+            colour = swarm_colour(name)
             spots = np.array([places[robot] for robot in of_swarm])
             circle.scatter(*spots.T, s=120, color=colour, edgecolors="white", zorder=3, label=f"S{name}")
         circle.set_axis_off()
@@ -289,7 +288,7 @@ def jams_figure(over_time: pd.DataFrame, title: str = "") -> Figure:
         axes = figure.subplots()
         time = over_time["time"]
         labels = {"jammed": f"in jams of {SMALLEST_JAM} or more", "largest": "in the largest cluster"}
-        for (quantity, label), colour in zip(labels.items(), ("#0072B2", "#D55E00"), strict=True):
+        for (quantity, label), colour in zip(labels.items(), CONDITION_COLOURS, strict=False):
             axes.step(time, over_time[quantity], where="post", color=colour, linewidth=0.8, alpha=0.3)
             smooth = over_time[quantity].rolling(_SMOOTHED, center=True, min_periods=1).mean()
             axes.plot(time, smooth, color=colour, linewidth=2, label=label)

@@ -13,24 +13,22 @@ from matplotlib.figure import Figure
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.figures.files import save
 from kswarms.analysis.figures.style import (
-    DETAILED,
-    Form,
-    Look,
+    LineStyle,
+    condition_style,
     curves_of,
     draw_curves,
     draw_line,
-    form_of_condition,
     heading,
     legend_below,
-    page,
     scale_from_zero,
+    seeds_legend,
     sheet,
 )
 from kswarms.analysis.results.runs import read_runs
 from kswarms.analysis.tables.learned import named_columns
 
 
-def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "", look: Look = DETAILED) -> Figure:
+def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool = True) -> Figure:
     """Draw the pucks deposited in the measured game over the number of robots, for each swarm.
 
     Parameters
@@ -41,8 +39,8 @@ def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "", look: Look 
         Id of the scenario to draw; its conditions, if several, are drawn as a curve each.
     title : str
         What the scenario is, printed after its id.
-    look : Look
-        Colours, and whether intervals and seeds are drawn.
+    detail : bool
+        Whether intervals and single seeds are drawn; the source shows means only.
 
     Returns
     -------
@@ -54,20 +52,21 @@ def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "", look: Look 
         `runs` has no row of the scenario.
     """
     rows = of_scenario(runs, scenario)
-    with page(rows, heading(scenario, title), look=look) as figure:
+    with sheet(heading(scenario, title)) as figure:
         axes = figure.subplots()
-        draw_curves(axes, curves_of(rows, look), "pucks", look)
+        draw_curves(axes, curves_of(rows), "pucks", detail)
         axes.set_ylabel("pucks deposited by the swarm")
         scale_from_zero(axes, rows["pucks"])
+        legend_below(figure, seeds_legend(rows, detail))
     return figure
 
 
-def time_shares(runs: pd.DataFrame, scenario: str, title: str = "", look: Look = DETAILED) -> Figure:
+def time_shares(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool = True) -> Figure:
     """Draw the share of time in conflict, T(a) / (T(a) + T(p)), over the number of robots (Fig. 6.3).
 
     Parameters
     ----------
-    runs, scenario, title, look
+    runs, scenario, title, detail
         As for `pucks_over_n`.
 
     Returns
@@ -81,14 +80,15 @@ def time_shares(runs: pd.DataFrame, scenario: str, title: str = "", look: Look =
         `runs` has no row of the scenario.
     """
     rows = with_time_shares(of_scenario(runs, scenario))
-    with page(rows, heading(scenario, title), width=11.0, look=look) as figure:
+    with sheet(heading(scenario, title), width=11.0) as figure:
         panels: Sequence[Axes] = figure.subplots(1, len(TIME_SHARES), sharey=True)
         for axes, kind in zip(panels, TIME_SHARES, strict=True):
-            draw_curves(axes, curves_of(rows, look), kind, look)
+            draw_curves(axes, curves_of(rows), kind, detail)
             axes.set_title(kind)
             axes.set_ylabel("share of time, T(a) / (T(a) + T(p))")
             axes.label_outer()
         scale_from_zero(panels[0], rows["total"])
+        legend_below(figure, seeds_legend(rows, detail))
     return figure
 
 
@@ -105,13 +105,13 @@ def with_time_shares(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def sud_over_n(
-    runs: pd.DataFrame, scenario: str, title: str = "", look: Look = DETAILED, swarm: int = 2
+    runs: pd.DataFrame, scenario: str, title: str = "", detail: bool = True, swarm: int = 2
 ) -> Figure:
     """Draw the Swarm Utility Difference (Eq. 3.7) of one swarm over the number of robots.
 
     Parameters
     ----------
-    runs, scenario, title, look
+    runs, scenario, title, detail
         As for `pucks_over_n`.
     swarm : int
         Number of the swarm, 1 … K; the source shows S2.
@@ -130,11 +130,12 @@ def sud_over_n(
     if swarm not in swarms:
         raise InputError("swarm", swarm, f"must be one of {', '.join(map(str, swarms))} in {scenario}")
     rows = rows[rows["swarm"] == swarm]
-    with page(rows, heading(scenario, title), look=look) as figure:
+    with sheet(heading(scenario, title)) as figure:
         axes = figure.subplots()
         axes.axhline(0, color="0.4", linewidth=1)
-        draw_curves(axes, curves_of(rows, look), "sud", look)
+        draw_curves(axes, curves_of(rows), "sud", detail)
         axes.set_ylabel(f"SUD of S{swarm} (pucks)")
+        legend_below(figure, seeds_legend(rows, detail))
     return figure
 
 
@@ -163,11 +164,11 @@ def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[st
             condition, opponent = column["condition"].iloc[0], column["opponent"].iloc[0]
             index = list(conditions).index(condition) if len(conditions) > 1 else place
             own = several and len(conditions) > 1
-            form = form_of_condition(index, DETAILED.of_swarm(opponent) if own else None)
-            axes.fill_between(column["n"], column["low"], column["high"], color=form.colour, alpha=0.2, lw=0)
-            draw_line(axes, column["n"], column["measured"], form, name)
+            style = condition_style(index, opponent if own else None)
+            axes.fill_between(column["n"], column["low"], column["high"], color=style.colour, alpha=0.2, lw=0)
+            draw_line(axes, column["n"], column["measured"], style, name)
             if column["published"].notna().any():
-                published = Form(form.colour, ":", "x")
+                published = LineStyle(style.colour, ":", "x")
                 draw_line(axes, column["n"], column["published"], published, f"{name}, published")
         axes.set_ylim(-3, 103)
         axes.set_xticks(sorted(set(cells["n"])))
@@ -194,12 +195,12 @@ def quantities(scenario: str) -> tuple[str, ...]:
     return TIME_SHARES if scenario in _OF_TIME else ("pucks",)
 
 
-def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", look: Look = DETAILED) -> Figure:
+def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool = True) -> Figure:
     """Draw what the source shows of a scenario: pucks, SUD of S2 or shares of time over the number of robots.
 
     Parameters
     ----------
-    runs, scenario, title, look
+    runs, scenario, title, detail
         As for `pucks_over_n`.
 
     Returns
@@ -212,7 +213,7 @@ def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", look: Look = D
         `runs` has no row of the scenario.
     """
     shown = {("sud",): sud_over_n, TIME_SHARES: time_shares}.get(quantities(scenario), pucks_over_n)
-    return shown(runs, scenario, title, look)
+    return shown(runs, scenario, title, detail)
 
 
 def draw(results_dir: Path, scenario_ids: Sequence[str], titles: Mapping[str, str]) -> list[Path]:

@@ -1,6 +1,6 @@
-"""One game over its time, from what a model's DataCollector holds: for notebooks.
+"""Figures of one game over its time, from the samples of a model's DataCollector.
 
-The frame is `model.datacollector.get_model_vars_dataframe()`: `time` (s) and for each swarm k `pucks_k`,
+`model.datacollector.get_model_vars_dataframe()` has the column `time` (s) and, for each swarm k, `pucks_k`,
 `sud_k` and `share_a_k`.
 """
 
@@ -8,10 +8,10 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.figures.style import DETAILED, Look, draw_line, legend_below, sheet
+from kswarms.analysis.figures.style import draw_line, legend_below, sheet, swarm_style
 
 
-def pucks_over_time(samples: pd.DataFrame, title: str = "", look: Look = DETAILED) -> Figure:
+def pucks_over_time(samples: pd.DataFrame, title: str = "") -> Figure:
     """Draw the pucks deposited by each swarm over the time of a game.
 
     Parameters
@@ -19,9 +19,7 @@ def pucks_over_time(samples: pd.DataFrame, title: str = "", look: Look = DETAILE
     samples : pandas.DataFrame
         Samples of a model.
     title : str
-        What it is of.
-    look : Look
-        Colours.
+        Heading.
 
     Returns
     -------
@@ -30,45 +28,41 @@ def pucks_over_time(samples: pd.DataFrame, title: str = "", look: Look = DETAILE
     Raises
     ------
     InputError
-        `samples` have no such columns.
+        A column is missing.
     """
-    return _over_time(samples, "pucks", "pucks deposited by the swarm", title, look)
+    return _over_time(samples, "pucks", "pucks deposited by the swarm", title)
 
 
-def sud_over_time(samples: pd.DataFrame, title: str = "", look: Look = DETAILED) -> Figure:
+def sud_over_time(samples: pd.DataFrame, title: str = "") -> Figure:
     """Draw the Swarm Utility Difference (Eq. 3.7) of each swarm over the time of a game.
 
-    Parameters, returned value and errors are those of `pucks_over_time`.
+    Parameters, return value and errors are those of `pucks_over_time`.
     """
-    figure = _over_time(samples, "sud", "SUD (pucks)", title, look)
+    figure = _over_time(samples, "sud", "SUD (pucks)", title)
     figure.axes[0].axhline(0, color="0.4", linewidth=1)
     return figure
 
 
-def time_share_over_time(samples: pd.DataFrame, title: str = "", look: Look = DETAILED) -> Figure:
+def time_share_over_time(samples: pd.DataFrame, title: str = "") -> Figure:
     """Draw the share of time that each swarm has spent in conflict so far, T(a) / (T(a) + T(p)).
 
-    Parameters, returned value and errors are those of `pucks_over_time`.
+    Parameters, return value and errors are those of `pucks_over_time`.
     """
-    figure = _over_time(samples, "share_a", "share of time in conflict so far", title, look)
+    figure = _over_time(samples, "share_a", "share of time in conflict so far", title)
     figure.axes[0].set_ylim(-0.02, 1.02)
     return figure
 
 
-def _over_time(samples: pd.DataFrame, quantity: str, label: str, title: str, look: Look) -> Figure:
-    prefix = f"{quantity}_"
-    swarms = sorted(
-        int(name.removeprefix(prefix))
-        for name in map(str, samples)
-        if name.startswith(prefix) and name.removeprefix(prefix).isdigit()
-    )
+def _over_time(samples: pd.DataFrame, quantity: str, label: str, title: str) -> Figure:
+    columns = samples.filter(regex=rf"^{quantity}_\d+$").columns
+    swarms = sorted(int(name.rpartition("_")[2]) for name in columns)
     if not swarms or "time" not in samples:
-        raise InputError("samples", list(samples), f"must have the columns time and {prefix}1")
+        raise InputError("samples", list(samples), f"must have the columns time and {quantity}_1")
     with sheet(title) as figure:
         axes = figure.subplots()
         for swarm in swarms:
-            draw_line(axes, samples["time"], samples[f"{prefix}{swarm}"], look.of_swarm(swarm), f"S{swarm}")
-            axes.lines[-1].set_markevery(max(1, len(samples) // 12))  # markers that touch hide the line
+            draw_line(axes, samples["time"], samples[f"{quantity}_{swarm}"], swarm_style(swarm), f"S{swarm}")
+            axes.lines[-1].set_markevery(max(1, len(samples) // 12))  # dense markers would hide the line
         axes.set_xlabel("time (s)")
         axes.set_ylabel(label)
         legend_below(figure)

@@ -1,1 +1,1 @@
-"""Pictures of a game from above, and films of them."""
+"""Images of a game from above, and films of them."""

@@ -1,9 +1,10 @@
-"""Films and contact sheets: pictures as an MP4, a GIF or a PNG, written whole or not at all."""
+"""Films (MP4, GIF) and contact sheets (PNG)."""
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
+from itertools import chain
 from pathlib import Path
 from typing import Final
 
@@ -14,47 +15,19 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.film.painter import palette
 
 FORMATS: Final = (".mp4", ".gif")
-_MOST_COLUMNS: Final = 4
+_MAX_COLUMNS: Final = 4
 _GAP: Final = 0.02
-"""Between the pictures of a sheet, as a part of a picture's width."""
+"""Gap between the images of a sheet, relative to the width of an image."""
 _DOTS_PER_INCH: Final = 300
 
 
-def write_film(path: Path, pictures: Iterable[Image.Image], fps: int) -> int:
-    """Write pictures as a film.
-
-    Parameters
-    ----------
-    path : Path
-        Its suffix says the format, one of `FORMATS`.
-    pictures : iterable of Image
-        At least one; all of the same size, even in both directions.
-    fps : int
-        Pictures a second.
-
-    Returns
-    -------
-    int
-        Pictures written.
-
-    Raises
-    ------
-    InputError
-        If the format is unknown, what writes it is not installed, or the path cannot be written; then
-        nothing is.
-    """
-    check_film(path)
-    with _written(path) as part:
-        return (_write_mp4 if path.suffix == ".mp4" else _write_gif)(part, iter(pictures), fps)
-
-
 def check_film(path: Path) -> None:
-    """Make sure that a film can be written, before it is drawn.
+    """Check that a film can be written in the format of a path.
 
     Raises
     ------
     InputError
-        As `write_film`.
+        The format is unknown, or its encoder is not installed.
     """
     if path.suffix not in FORMATS:
         raise InputError("out", str(path), f"must end with {' or '.join(FORMATS)}")
@@ -62,77 +35,99 @@ def check_film(path: Path) -> None:
         raise InputError("out", str(path), "needs pip install 'kswarms[explore]'; a .gif does not")
 
 
-def write_sheet(path: Path, pictures: Sequence[Image.Image]) -> None:
-    """Write pictures side by side as one PNG.
+def write_film(path: Path, images: Iterable[Image.Image], fps: int) -> int:
+    """Write images as a film.
 
     Parameters
     ----------
     path : Path
-        Where to.
-    pictures : sequence of Image
-        At least one; all of the same size.
+        File with the suffix of one of `FORMATS`. An error leaves an existing file unchanged.
+    images : iterable of Image
+        At least one image; all have the same size, and both sides are even.
+    fps : int
+        Images per second.
+
+    Returns
+    -------
+    int
+        Number of images.
 
     Raises
     ------
     InputError
-        If the path cannot be written; then nothing is.
+        As for `check_film`, or the file cannot be written.
     """
-    width, height = pictures[0].size
-    columns = min(_MOST_COLUMNS, math.ceil(math.sqrt(len(pictures))))
-    rows = math.ceil(len(pictures) / columns)
+    check_film(path)
+    with _temporary(path) as file:
+        return (_write_mp4 if path.suffix == ".mp4" else _write_gif)(file, iter(images), fps)
+
+
+def write_sheet(path: Path, images: Sequence[Image.Image]) -> None:
+    """Write images side by side as one PNG.
+
+    Parameters
+    ----------
+    path : Path
+        File. An error leaves an existing file unchanged.
+    images : sequence of Image
+        At least one image; all have the same size.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written.
+    """
+    width, height = images[0].size
+    columns = min(_MAX_COLUMNS, math.ceil(math.sqrt(len(images))))
+    rows = math.ceil(len(images) / columns)
     gap = round(_GAP * width)
     sheet = Image.new("RGB", (columns * (width + gap) - gap, rows * (height + gap) - gap), "white")
-    for k, picture in enumerate(pictures):
+    for k, image in enumerate(images):
         row, column = divmod(k, columns)
-        sheet.paste(picture, (column * (width + gap), row * (height + gap)))
-    with _written(path) as part:
-        sheet.save(part, dpi=(_DOTS_PER_INCH, _DOTS_PER_INCH))
+        sheet.paste(image, (column * (width + gap), row * (height + gap)))
+    with _temporary(path) as file:
+        sheet.save(file, dpi=(_DOTS_PER_INCH, _DOTS_PER_INCH))
 
 
-def _write_mp4(path: Path, pictures: Iterator[Image.Image], fps: int) -> int:
+def _write_mp4(path: Path, images: Iterator[Image.Image], fps: int) -> int:
     import imageio_ffmpeg
 
-    first = next(pictures)
-    sink = imageio_ffmpeg.write_frames(
-        str(path),
-        first.size,
-        fps=fps,
-        macro_block_size=2,
-        ffmpeg_log_level="error",
+    first = next(images)
+    encoder = imageio_ffmpeg.write_frames(
+        str(path), first.size, fps=fps, macro_block_size=2, ffmpeg_log_level="error"
     )
-    sink.send(None)
+    encoder.send(None)
     try:
-        count = 1
-        sink.send(first.tobytes())
-        for picture in pictures:
-            sink.send(picture.tobytes())
+        count = 0
+        for image in chain([first], images):
+            encoder.send(image.tobytes())
             count += 1
     finally:
-        sink.close()
+        encoder.close()
     return count
 
 
-def _write_gif(path: Path, pictures: Iterator[Image.Image], fps: int) -> int:
+def _write_gif(path: Path, images: Iterator[Image.Image], fps: int) -> int:
     colours = palette()
     count = 0
 
     def reduced() -> Iterator[Image.Image]:
         nonlocal count
-        for picture in pictures:
+        for image in images:
             count += 1
-            yield picture.quantize(palette=colours, dither=Image.Dither.NONE)
+            yield image.quantize(palette=colours, dither=Image.Dither.NONE)
 
     frames = reduced()
-    # A GIF counts in hundredths of a second.
+    # GIF stores durations in hundredths of a second.
     next(frames).save(path, save_all=True, append_images=frames, duration=10 * round(100 / fps), loop=0)
     return count
 
 
 @contextmanager
-def _written(path: Path) -> Iterator[Path]:
-    """Give a file to write to in place of `path`, as `kswarms.agents.common.atomic_files.whole` does."""
+def _temporary(path: Path) -> Iterator[Path]:
+    """Yield a temporary path; on success it replaces `path`."""
     try:
-        with whole(path) as part:
-            yield part
+        with whole(path) as file:
+            yield file
     except OSError as error:
         raise InputError("out", str(path), "must be a place that can be written") from error

@@ -1,75 +1,80 @@
-"""A picture of the arena with its robots, drawn from plain arrays."""
+"""Images of the arena and its robots, painted from arrays."""
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import combinations
-from typing import Final
+from typing import Any, Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageColor, ImageDraw, ImageFont
 
+from kswarms.analysis.colours import SWARM_COLOURS, swarm_colour
+
 Floats = NDArray[np.float64]
 
-SWARM_COLOURS: Final = ("#008000", "#d50000", "#1e40ff", "#ff8c00", "#800080", "#8b4513")
-"""Of S1, S2 …: green and red as in the source, then the order of the figures."""
 _IN_ACTION: Final = "#ffc107"
 _WALL, _STATION, _PUCK, _WHITE = "#333333", "#2b2b2b", "#111111", "#ffffff"
-_SMOOTH: Final = 3
-"""Pixels are the mean of this many times as many, each way."""
+_TINT: Final = 0.22
+"""Share of the swarm's colour in its base; the rest is white."""
+_OVERSAMPLING: Final = 3
+"""Images are painted this many times as large, each way, and then reduced."""
 _MARGIN: Final = 0.03
-"""Around the arena, as a part of half its side."""
+"""Width of the margin around the arena, relative to half its side."""
 _HEADER: Final = 0.06
-"""Height of the line above it, as a part of the picture's width."""
+"""Height of the line above the arena, relative to the width of the image."""
 
 
-@dataclass(frozen=True)
-class Ground:
-    """What stands still; lengths in metres.
+class Places(Protocol):
+    """The arena that is drawn, such as a `kswarms.model.description.arena.Arena`; lengths in m."""
 
-    Attributes
-    ----------
-    half : float
-        Half the side of the arena.
-    stations, bases : ndarray of float64, shape (m, 2) and (K, 2)
-        Their middles.
-    station_radius, base_radius, radius : float
-        Radii of stations, bases and robots.
-    """
+    @property
+    def half(self) -> float:
+        """Half the side of the arena."""
 
-    half: float
-    stations: Floats
-    bases: Floats
-    station_radius: float
-    base_radius: float
-    radius: float
+    @property
+    def stations(self) -> Any:
+        """Centres of the stations, shape (S, 2)."""
+
+    @property
+    def bases(self) -> Any:
+        """Centres of the bases, shape (K, 2)."""
+
+    @property
+    def station_radius(self) -> float:
+        """Radius of the stations."""
+
+    @property
+    def base_radius(self) -> float:
+        """Radius of the bases."""
 
 
 class ArenaPainter:
-    """Paints pictures of one arena.
+    """Painter of one arena.
 
     Parameters
     ----------
-    ground : Ground
-        What stands still.
+    places : Places
+        Arena, stations and bases.
+    robot_radius : float
+        Radius of the robots (m).
     width : int
-        Of a picture (pixels); its height is `height`.
+        Width of the images (pixels), rounded down to an even number.
 
     Attributes
     ----------
     width, height : int
-        Of a picture (pixels); both even, as video formats want them.
+        Size of the images (pixels); both are even, as video formats require.
     """
 
-    def __init__(self, ground: Ground, width: int) -> None:
-        self.ground = ground
+    def __init__(self, places: Places, robot_radius: float, width: int) -> None:
         self.width = width - width % 2
         header = int(self.width * _HEADER)
         self.height = self.width + header + header % 2
-        self._scale = _SMOOTH * self.width / (2 * ground.half * (1 + _MARGIN))
+        self._radius = robot_radius
+        self._scale = _OVERSAMPLING * self.width / (2 * places.half * (1 + _MARGIN))
         self._font = ImageFont.load_default(0.7 * header)
-        self._still = self._paint_ground()
+        self._background = self._paint_background(places)
 
     def paint(
         self,
@@ -81,14 +86,14 @@ class ArenaPainter:
         in_action: NDArray[np.bool_],
         carrying: NDArray[np.bool_],
     ) -> Image.Image:
-        """Return a picture of an instant.
+        """Return an image of an instant.
 
         Parameters
         ----------
         title : str
-            Written above it, on the left.
+            Text above the arena, on the left.
         pucks : sequence of int
-            Score of each swarm, written on the right.
+            Score of each swarm, written above the arena on the right.
         positions : ndarray of float64, shape (n, 2)
             (m)
         heading : ndarray of float64, shape (n,)
@@ -96,95 +101,84 @@ class ArenaPainter:
         swarm : ndarray of int64, shape (n,)
             Counted from 0.
         in_action, carrying : ndarray of bool, shape (n,)
-            Whether in state A (a yellow ring); whether with a puck (a black disc on white).
+            Robots in state A have a yellow ring, robots with a puck a black disc on white.
         """
-        picture = self._still.copy()
-        pen = ImageDraw.Draw(picture)
-        radius = self.ground.radius
+        image = self._background.copy()
+        pen = ImageDraw.Draw(image)
+        radius = self._radius
         robots = zip(positions, heading, swarm, in_action, carrying, strict=True)
         for (x, y), angle, own, acts, carries in robots:
-            self._disc(pen, x, y, 0.97 * radius, _colour(own))
+            pen.ellipse(self._box(x, y, 0.97 * radius), fill=swarm_colour(own + 1))
             if acts:
-                self._ring(pen, x, y, 0.97 * radius, 0.2 * radius)
+                pen.ellipse(
+                    self._box(x, y, 0.97 * radius),
+                    outline=_IN_ACTION,
+                    width=max(1, round(0.2 * radius * self._scale)),
+                )
             dx, dy = math.cos(angle), math.sin(angle)
-            ends = [self._at(x + r * radius * dx, y + r * radius * dy) for r in (0.3, 0.95)]
+            ends = [self._pixel(x + r * radius * dx, y + r * radius * dy) for r in (0.3, 0.95)]
             pen.line([*ends[0], *ends[1]], fill=_WHITE, width=max(1, round(0.18 * radius * self._scale)))
             if carries:
-                self._disc(pen, x, y, 0.42 * radius, _WHITE)
-                self._disc(pen, x, y, 0.32 * radius, _PUCK)
-        reduced = picture.reduce(_SMOOTH)
-        whole = Image.new("RGB", (self.width, self.height), _WHITE)
-        whole.paste(reduced, (0, self.height - self.width))
-        self._write_header(ImageDraw.Draw(whole), title, pucks)
-        return whole
+                pen.ellipse(self._box(x, y, 0.42 * radius), fill=_WHITE)
+                pen.ellipse(self._box(x, y, 0.32 * radius), fill=_PUCK)
+        framed = Image.new("RGB", (self.width, self.height), _WHITE)
+        framed.paste(image.reduce(_OVERSAMPLING), (0, self.height - self.width))
+        self._write_header(ImageDraw.Draw(framed), title, pucks)
+        return framed
 
     def _write_header(self, pen: ImageDraw.ImageDraw, title: str, pucks: Sequence[int]) -> None:
         middle = (self.height - self.width) / 2
         edge = self.width * _MARGIN
         pen.text((edge, middle), title, fill=_WALL, font=self._font, anchor="lm")
         right = self.width - edge
-        for k, score in reversed(list(enumerate(pucks))):
-            text = f"S{k + 1} {score}"
-            pen.text((right, middle), text, fill=_colour(k), font=self._font, anchor="rm")
+        for swarm, score in reversed(list(enumerate(pucks, 1))):
+            text = f"S{swarm} {score}"
+            pen.text((right, middle), text, fill=swarm_colour(swarm), font=self._font, anchor="rm")
             right -= pen.textlength(f"{text}   ", font=self._font)
 
-    def _paint_ground(self) -> Image.Image:
-        ground = self.ground
-        side = _SMOOTH * self.width
-        picture = Image.new("RGB", (side, side), _WHITE)
-        pen = ImageDraw.Draw(picture)
-        wall = 0.02 * ground.half
-        corners = [
-            *self._at(-ground.half - wall, ground.half + wall),
-            *self._at(ground.half + wall, -ground.half - wall),
-        ]
+    def _paint_background(self, places: Places) -> Image.Image:
+        side = _OVERSAMPLING * self.width
+        image = Image.new("RGB", (side, side), _WHITE)
+        pen = ImageDraw.Draw(image)
+        wall = 0.02 * places.half
+        outside = places.half + wall
+        corners = [*self._pixel(-outside, outside), *self._pixel(outside, -outside)]
         pen.rectangle(corners, outline=_WALL, width=round(wall * self._scale))
-        for x, y in ground.stations:
-            self._disc(pen, x, y, ground.station_radius, _STATION)
+        for x, y in places.stations:
+            pen.ellipse(self._box(x, y, places.station_radius), fill=_STATION)
         font = ImageFont.load_default(0.1 * self._scale)
-        for k, (x, y) in enumerate(ground.bases):
-            colour = ImageColor.getrgb(_colour(k))
-            self._disc(pen, x, y, ground.base_radius, tuple(round(255 - 0.22 * (255 - c)) for c in colour))
-            pen.text(self._at(x, y), f"S{k + 1}", fill=_colour(k), font=font, anchor="mm")
-        return picture
+        for swarm, (x, y) in enumerate(places.bases, 1):
+            colour = swarm_colour(swarm)
+            pen.ellipse(self._box(x, y, places.base_radius), fill=_blend(_WHITE, colour, _TINT))
+            pen.text(self._pixel(x, y), f"S{swarm}", fill=colour, font=font, anchor="mm")
+        return image
 
-    def _at(self, x: float, y: float) -> tuple[float, float]:
-        """Return the pixel of a place (m)."""
-        middle = _SMOOTH * self.width / 2
+    def _pixel(self, x: float, y: float) -> tuple[float, float]:
+        """Return the pixel of a point (m)."""
+        middle = _OVERSAMPLING * self.width / 2
         return middle + self._scale * float(x), middle - self._scale * float(y)
 
-    def _disc(
-        self, pen: ImageDraw.ImageDraw, x: float, y: float, radius: float, colour: str | tuple[int, ...]
-    ) -> None:
-        pen.ellipse(self._box(x, y, radius), fill=colour)
-
-    def _ring(self, pen: ImageDraw.ImageDraw, x: float, y: float, radius: float, width: float) -> None:
-        pen.ellipse(self._box(x, y, radius), outline=_IN_ACTION, width=max(1, round(width * self._scale)))
-
     def _box(self, x: float, y: float, radius: float) -> tuple[float, float, float, float]:
-        middle_x, middle_y = self._at(x, y)
+        """Return the corners of the square around a circle (pixels)."""
+        middle_x, middle_y = self._pixel(x, y)
         reach = radius * self._scale
         return middle_x - reach, middle_y - reach, middle_x + reach, middle_y + reach
 
 
-def _colour(swarm: int) -> str:
-    return SWARM_COLOURS[swarm % len(SWARM_COLOURS)]
-
-
-def _blend(one: str, other: str, part: float) -> tuple[int, ...]:
-    """Return one colour with a part of another in it."""
+def _blend(one: str, other: str, share: float) -> tuple[int, ...]:
+    """Return the mixture of two colours; `share` is that of the other."""
     pairs = zip(ImageColor.getrgb(one), ImageColor.getrgb(other), strict=True)
-    return tuple(round((1 - part) * a + part * b) for a, b in pairs)
+    return tuple(round((1 - share) * a + share * b) for a, b in pairs)
 
 
 def palette() -> Image.Image:
-    """Return an image whose palette has the colours of all pictures, and what smooth edges make of them.
+    """Return an image whose palette holds the colours of all images and the mixtures at smooth edges.
 
-    A palette taken from a film's first picture would lack whatever appears later.
+    A palette from the first image of a film would lack the colours that appear later.
     """
     plain = (_WHITE, _STATION, _IN_ACTION, *SWARM_COLOURS)
-    colours = [_blend(a, b, part) for a, b in combinations(plain, 2) for part in (0.0, 0.25, 0.5, 0.75)]
-    colours += [_blend(_WHITE, colour, 0.22) for colour in SWARM_COLOURS]
+    colours = [_blend(a, b, share) for a, b in combinations(plain, 2) for share in (0.0, 0.25, 0.5, 0.75)]
+    colours += [_blend(_WHITE, colour, _TINT) for colour in SWARM_COLOURS]
     colours += [_blend(name, name, 0.0) for name in (*plain, _WALL, _PUCK)]
     image = Image.new("P", (1, 1))
     image.putpalette([value for colour in dict.fromkeys(colours) for value in colour])

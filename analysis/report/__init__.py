@@ -8,7 +8,6 @@ from typing import Final
 
 import pandas as pd
 
-from kswarms.analysis.figures.style import Look
 from kswarms.analysis.findings import FINDINGS, Finding, judge_all
 from kswarms.analysis.report.coverage import Planned, coverage
 from kswarms.analysis.report.coverage import printed as printed_coverage
@@ -57,7 +56,6 @@ def report(
     source_tables: Mapping[str, tuple[str, Sequence[str]]],
     findings: Sequence[Finding] = FINDINGS,
     places_of: PlacesOf = lambda *_: None,
-    safe: bool = False,
     progress: Progress = iter,
 ) -> Report:
     """Report on a results directory.
@@ -74,8 +72,6 @@ def report(
         What is judged.
     places_of : callable
         Where stations and bases are, for the heat maps.
-    safe : bool
-        Whether swarms have colours that the colour-blind tell apart, in place of the source's.
     progress : callable
         Passes the steps on, as a progress bar does.
 
@@ -95,10 +91,10 @@ def report(
     conflicts, robots = recorded_curves(directory, results.runs)
     steps: list[Step] = [
         partial(_verdicts, results, findings),
-        *_scenarios(results, plan, source_tables, covered, safe),
+        *_scenarios(results, plan, source_tables, covered),
         *_tables(results, source_tables),
         partial(argos_parts, results.runs),
-        *(partial(conflict_parts, directory, curve, places_of, Look(safe)) for curve in conflicts),
+        *(partial(conflict_parts, directory, curve, places_of) for curve in conflicts),
         *(partial(robots_parts, directory, curve) for curve in robots),
     ]
     parts: dict[str, list[Part]] = defaultdict(list)
@@ -127,7 +123,6 @@ def _scenarios(
     plan: Mapping[str, Planned],
     tables: Mapping[str, tuple[str, Sequence[str]]],
     covered: pd.DataFrame,
-    safe: bool,
 ) -> Iterator[Step]:
     """Yield a step for each scenario that there are runs of, in the order of the plan."""
     missing = dict(zip(covered["scenario"], covered["missing"], strict=True))
@@ -138,14 +133,14 @@ def _scenarios(
     ]:
         title = plan[scenario].title if scenario in plan else ""
         table = tabulated.get(scenario, "")
-        yield partial(_scenario, results, scenario, title, missing.get(scenario, ""), table, safe)
+        yield partial(_scenario, results, scenario, title, missing.get(scenario, ""), table)
 
 
 def _scenario(
-    results: Results, scenario: str, title: str, missing: str, table: str, safe: bool
+    results: Results, scenario: str, title: str, missing: str, table: str
 ) -> Iterator[tuple[str, Part]]:
     chapter = next(start for start in _OF_SCENARIOS if scenario.startswith(start))
-    yield chapter, scenario_part(results, scenario, title, missing, table, safe)
+    yield chapter, scenario_part(results, scenario, title, missing, table)
 
 
 def _tables(results: Results, tables: Mapping[str, tuple[str, Sequence[str]]]) -> Iterator[Step]:

@@ -10,7 +10,7 @@ import pandas as pd
 
 from kswarms.analysis.figures import emergence, networks
 from kswarms.analysis.figures import heat_maps as maps
-from kswarms.analysis.figures.style import Look
+from kswarms.analysis.film.painter import Places
 from kswarms.analysis.report.page import Part, Tabled
 from kswarms.analysis.results.records import (
     CONFLICTS_FILE,
@@ -24,7 +24,7 @@ from kswarms.analysis.text_tables import NONE, PrintedTable
 GAMES: Final = 4
 """Recorded games of a density that the report looks into: conflicts of twenty would not tell more."""
 
-PlacesOf = Callable[[str, str, int, int], maps.Places | None]
+PlacesOf = Callable[[str, str, int, int], Places | None]
 """Stations and bases of a scenario, condition, number of robots and seed; None if they are not known."""
 
 
@@ -68,9 +68,7 @@ def recorded_curves(directory: Path, runs: pd.DataFrame) -> tuple[list[Recorded]
     return found[0], found[1]
 
 
-def conflict_parts(
-    directory: Path, curve: Recorded, places_of: PlacesOf, look: Look
-) -> Iterator[tuple[str, Part]]:
+def conflict_parts(directory: Path, curve: Recorded, places_of: PlacesOf) -> Iterator[tuple[str, Part]]:
     """Show the recorded conflicts of a curve.
 
     Yields
@@ -85,17 +83,17 @@ def conflict_parts(
     game = measured[measured["run"] == first["run"]]
     of_game = f"{curve.name}: N = {first['n']}, seed {first['seed']}"
     if not game.empty:
-        yield "networks", _network_part(directory, curve, game, of_game, look)
-        yield "maps", _maps_part(curve, measured, places_of, look)
+        yield "networks", _network_part(directory, curve, game, of_game)
+        yield "maps", _maps_part(curve, measured, places_of)
     if one["q"].notna().any():
         yield "emergence", _emergence_part(curve, one, of_game)
 
 
-def _network_part(directory: Path, curve: Recorded, game: pd.DataFrame, of_game: str, look: Look) -> Part:
+def _network_part(directory: Path, curve: Recorded, game: pd.DataFrame, of_game: str) -> Part:
     part = Part(f"network-{curve.id}", curve.name)
     part.show(
         part.id,
-        networks.network_figure(networks.meeting_network(game), f"{of_game}: who met whom", look),
+        networks.network_figure(networks.meeting_network(game), f"{of_game}: who met whom"),
         f"Network and matrix of the time that each two robots spent in conflict, {of_game}.",
         f"Who met whom in the measured game, {of_game}: left, the wider and darker a line the longer two "
         "met; right, the same times as a matrix, grey where two never met.",
@@ -152,21 +150,21 @@ def _printed(frame: pd.DataFrame) -> PrintedTable:
     return PrintedTable([heading for heading, _ in columns.values()], rows, caption)
 
 
-def _maps_part(curve: Recorded, measured: pd.DataFrame, places_of: PlacesOf, look: Look) -> Part:
+def _maps_part(curve: Recorded, measured: pd.DataFrame, places_of: PlacesOf) -> Part:
     part = Part(f"map-{curve.id}", curve.name)
     dense = curve.densest()
     seeds = dense["seed"].nunique()
     of_games = f"{curve.name}: N = {dense['n'].iloc[0]}, {seeds} seed{'s' if seeds > 1 else ''}"
     part.show(
         part.id,
-        maps.heat_maps(measured, of_games, _common(curve, places_of), look),
+        maps.heat_maps(measured, of_games, _common(curve, places_of)),
         f"Heat maps of the places where conflicts began in the measured game, all and by action, {of_games}.",
         f"Where conflicts began in the measured game, all and by action, with their numbers; {of_games}.",
     )
     return part
 
 
-def _common(curve: Recorded, places_of: PlacesOf) -> maps.Places | None:
+def _common(curve: Recorded, places_of: PlacesOf) -> Places | None:
     """Return the places of a curve's games, None where they differ or are not known."""
     games = curve.densest()[["n", "seed"]].to_numpy().tolist()
     first, *others = (places_of(curve.scenario, curve.condition, n, seed) for n, seed in games)

@@ -8,7 +8,7 @@ import pandas as pd
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.figures import over_n as figures
-from kswarms.analysis.figures.style import Look, heading
+from kswarms.analysis.figures.style import heading
 from kswarms.analysis.findings import Verdict
 from kswarms.analysis.report.page import Part, Tabled
 from kswarms.analysis.results.runs import Results
@@ -26,7 +26,7 @@ _SHOWN: Final = {
 }
 
 
-def scenario_part(results: Results, scenario: str, title: str, missing: str, table: str, safe: bool) -> Part:
+def scenario_part(results: Results, scenario: str, title: str, missing: str, table: str) -> Part:
     """Show a scenario: its figure in the source's form and in detail, its numbers, what its learners learned.
 
     Parameters
@@ -39,8 +39,6 @@ def scenario_part(results: Results, scenario: str, title: str, missing: str, tab
         What the runs lack of the plan; empty for nothing.
     table : str
         The source's table of what it learned; empty for none.
-    safe : bool
-        Whether colours are those that the colour-blind tell apart.
     """
     part = Part(scenario, heading(scenario, title))
     if missing:
@@ -49,13 +47,13 @@ def scenario_part(results: Results, scenario: str, title: str, missing: str, tab
     frame = scores.scores(results.runs, scenario)
     curves = ", ".join(dict.fromkeys(frame["curve"]))
     alt = f"Line chart of the {shown} over the number of robots in all, for {curves}"
-    for name, look, form in (
-        (f"{scenario}-source", Look(safe, detail=False), "in the form of the source"),
-        (scenario, Look(safe), "with intervals and single seeds"),
+    for name, detail, form in (
+        (f"{scenario}-source", False, "in the form of the source"),
+        (scenario, True, "with intervals and single seeds"),
     ):
         part.show(
             name,
-            figures.figure_of(results.runs, scenario, title, look),
+            figures.figure_of(results.runs, scenario, title, detail),
             f"{alt}, {form}; the table of {scenario} has its numbers.",
             f"{shown[0].upper()}{shown[1:]}, {form}.",
         )

@@ -101,14 +101,9 @@ def _check(field: str, value: object, allowed: bool, rule: str) -> None:
 
 def _pictures(player: "Player", instants: list[float], size: int, played: str) -> Iterator["Image"]:
     """Play to each instant and paint it; the end of the game is the last, if it comes before."""
-    from kswarms.analysis.film.painter import ArenaPainter, Ground
+    from kswarms.analysis.film.painter import ArenaPainter
 
-    arena = player.model.arena
-    ground = Ground(
-        *(arena.half, arena.stations, arena.bases, arena.station_radius, arena.base_radius),
-        player.game.body.radius,
-    )
-    painter = ArenaPainter(ground, size)
+    painter = ArenaPainter(player.model.arena, player.game.body.radius, size)
     for instant in tracked(instants, "filming", len(instants)):
         with naming(played):
             player.seek(instant)

@@ -31,9 +31,6 @@ def report(
         Path | None,
         typer.Option(metavar="TOML", help="Findings of your own, judged with those of the thesis."),
     ] = None,
-    colour_blind: Annotated[
-        bool, typer.Option("--colour-blind", help="Colours of swarms that everybody tells apart.")
-    ] = False,
 ) -> None:
     """Write figures, tables and verdicts of all results into one HTML file that needs no network."""
     from kswarms.analysis.findings import FINDINGS, load
@@ -62,7 +59,6 @@ def report(
         TABLES,
         findings=(*FINDINGS, *own),
         places_of=_arena,
-        safe=colour_blind,
         progress=_progress,
     )
     if files is not None:

@@ -11,12 +11,12 @@ from kswarms.agents.learning.rewards import REWARDS
 from kswarms.agents.learning.selection_rules import RULES
 from kswarms.agents.policies.registry import ALIASES, POLICIES
 from kswarms.agents.robot.body import BODIES
+from kswarms.analysis.colours import swarm_colour
 from kswarms.model.description.fields import LAYOUTS
 from kswarms.model.description.parameters import Parameters, parse_parameters
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.explore.form import learning_of
 from kswarms.scenarios.explore.session import Act, Session
-from kswarms.scenarios.explore.views import colour_of
 
 MOST_ROBOTS: Final = 100
 _SLIDERS: Final = {
@@ -136,7 +136,8 @@ def _swarm(session: Session, k: int, act: Act) -> None:
     def change(**changes: Any) -> None:
         act(lambda: session.change_swarm(k, **changes))
 
-    with solara.v.Html(tag="div", class_="kswarms-swarm", style_=f"border-left: 6px solid {colour_of(k)}"):
+    border = f"border-left: 6px solid {swarm_colour(k + 1)}"
+    with solara.v.Html(tag="div", class_="kswarms-swarm", style_=border):
         solara.v.Combobox(
             label=f"S{k + 1}: policy",
             v_model=swarm.policy,

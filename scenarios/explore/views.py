@@ -3,15 +3,10 @@
 from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
-from kswarms.analysis.film.painter import SWARM_COLOURS
+from kswarms.analysis.colours import swarm_colour
 from kswarms.scenarios.watch.player import Player, Sample
 
 Json = dict[str, Any]
-
-
-def colour_of(swarm: int) -> str:
-    """Return the colour of a swarm, counted from 0."""
-    return SWARM_COLOURS[swarm % len(SWARM_COLOURS)]
 
 
 def scene_of(player: Player) -> Json:
@@ -27,7 +22,7 @@ def scene_of(player: Player) -> Json:
         "radius": body.radius,
         "conflictReach": body.radius + body.sensing_scale * parameters.conflict_distance,
         "frontHalfAngle": parameters.front_half_angle,
-        "colours": [colour_of(k) for k in range(len(game.swarms))],
+        "colours": [swarm_colour(k + 1) for k in range(len(game.swarms))],
     }
 
 
@@ -111,7 +106,7 @@ def _line(name: str, swarm: int, times: Sequence[float], values: Sequence[float]
         "type": "line",
         "symbol": "none",
         "animation": False,
-        "color": colour_of(swarm),
+        "color": swarm_colour(swarm + 1),
         "lineStyle": {"type": dash, "width": 2},
         "data": [[round(time, 1), round(value, 4)] for time, value in zip(times, values, strict=True)],
     }

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from kswarms.agents.common.errors import InputError
+from kswarms.analysis.colours import SWARM_COLOURS
 from kswarms.analysis.figures.over_n import (
     TIME_SHARES,
     draw,
@@ -22,7 +23,6 @@ from kswarms.analysis.figures.over_n import (
     sud_over_n,
     time_shares,
 )
-from kswarms.analysis.figures.style import SAFE, SOURCE
 from tests.helpers.result_rows import DENSITIES, runs_of
 
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -56,10 +56,11 @@ def test_swarms_have_the_form_of_the_source() -> None:
         label: (line.get_color(), line.get_linestyle(), line.get_marker(), line.get_markerfacecolor())
         for label, line in curves(axes).items()
     }
+    green, red, blue, *_ = SWARM_COLOURS
     assert forms == {
-        "S1: avoid": ("green", "--", "o", "white"),
-        "S2: attack": ("red", "--", "o", "red"),
-        "S3: aggressive": ("blue", "-.", "^", "blue"),
+        "S1: avoid": (green, "--", "o", "white"),
+        "S2: attack": (red, "--", "o", red),
+        "S3: aggressive": (blue, "-.", "^", blue),
     }
 
 
@@ -239,24 +240,12 @@ def test_the_figure_of_a_scenario_shows_what_it_is_for(scenario: str, label: str
 
 
 def test_the_source_s_form_has_means_alone() -> None:
-    figure = pucks_over_n(runs_of("fig-x"), "fig-x", look=SOURCE)
+    figure = pucks_over_n(runs_of("fig-x"), "fig-x", detail=False)
     (axes,) = figure.axes
     assert list(axes.collections) == []
     assert heights(curves(axes)["S1: avoid"]) == [16, 26, 36]
-    assert curves(axes)["S1: avoid"].get_color() == "green"
+    assert curves(axes)["S1: avoid"].get_color() == SWARM_COLOURS[0]
     assert figure.legends[0].get_title().get_text() == "mean of 4 seeds"
-
-
-def test_safe_colours_keep_the_lines_and_markers_of_the_source() -> None:
-    (ours,) = pucks_over_n(runs_of("fig-x", swarms=range(1, 4)), "fig-x", look=SAFE).axes
-    (source,) = pucks_over_n(runs_of("fig-x", swarms=range(1, 4)), "fig-x").axes
-    for line, as_printed in zip(curves(ours).values(), curves(source).values(), strict=True):
-        assert (line.get_linestyle(), line.get_marker()) == (
-            as_printed.get_linestyle(),
-            as_printed.get_marker(),
-        )
-        assert line.get_color() != as_printed.get_color()
-    assert len({line.get_color() for line in curves(ours).values()}) == 3
 
 
 def test_same_runs_same_picture(tmp_path: Path) -> None:

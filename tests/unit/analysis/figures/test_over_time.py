@@ -7,6 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from kswarms.agents.common.errors import InputError
+from kswarms.analysis.colours import SWARM_COLOURS
 from kswarms.analysis.figures import emergence, networks
 from kswarms.analysis.figures import heat_maps as maps
 from kswarms.analysis.figures.files import drawn, encoded, save
@@ -40,7 +41,7 @@ def test_a_game_over_its_time(model: ForagingModel, draw: type, column: str, lab
     for k, line in enumerate(handles):
         assert line.get_xdata().tolist() == samples["time"].tolist()
         assert line.get_ydata().tolist() == samples[f"{column}_{k + 1}"].tolist()
-    assert [line.get_color() for line in handles] == ["green", "red"]
+    assert [line.get_color() for line in handles] == list(SWARM_COLOURS[:2])
 
 
 def test_samples_without_the_columns() -> None:

@@ -9,7 +9,6 @@ import pytest
 from matplotlib.figure import Figure
 
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.figures.style import Look
 from kswarms.analysis.findings import Verdict
 from kswarms.analysis.report.coverage import Planned, coverage, printed
 from kswarms.analysis.report.page import Chapter, Part, Report, Tabled
@@ -150,13 +149,13 @@ def test_stations_that_differ_from_seed_to_seed_are_not_drawn_into_one_map(tmp_p
     def drawn(layout: str, monkeypatch: pytest.MonkeyPatch) -> list[bool]:
         shown: list[bool] = []
 
-        def heat_maps(conflicts: pd.DataFrame, title: str, places: Arena | None, look: Look) -> Figure:
+        def heat_maps(conflicts: pd.DataFrame, title: str, places: Arena | None) -> Figure:
             shown.append(places is not None)
             return Figure()
 
         monkeypatch.setattr("kswarms.analysis.figures.heat_maps.heat_maps", heat_maps)
         chapters = conflict_parts(
-            tmp_path, curve, lambda *key: build_arena(layout, 2, 2.0, 0.16, 0.17, key[-1]), Look()
+            tmp_path, curve, lambda *key: build_arena(layout, 2, 2.0, 0.16, 0.17, key[-1])
         )
         assert [chapter for chapter, _ in chapters] == ["networks", "maps"]
         return shown

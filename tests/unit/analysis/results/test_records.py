@@ -13,7 +13,6 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.figures import emergence, networks
 from kswarms.analysis.figures import heat_maps as maps
 from kswarms.analysis.figures.files import encoded
-from kswarms.analysis.figures.style import SAFE
 from kswarms.analysis.results import records
 from kswarms.model.description.arena import build_arena
 from tests.helpers.result_rows import MET, conflict, robots
@@ -118,7 +117,7 @@ def test_jams_refuse_what_has_no_answer() -> None:
 
 
 def test_the_network_is_drawn_with_a_line_for_each_pair_and_its_time_in_the_matrix() -> None:
-    figure = networks.network_figure(networks.meeting_network(MET), "title", SAFE)
+    figure = networks.network_figure(networks.meeting_network(MET), "title")
     circle, matrix, colours = figure.axes
     lines = sum(
         len(drawn.get_segments()) for drawn in circle.collections if isinstance(drawn, LineCollection)
