@@ -11,6 +11,7 @@ from typing import Annotated, Any, Final
 import typer
 from pydantic import ValidationError
 
+from kswarms import __version__
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.cli.calibrate import calibrate
 from kswarms.scenarios.cli.catalogue import list_scenarios, show
@@ -21,8 +22,7 @@ from kswarms.scenarios.cli.film import film
 from kswarms.scenarios.cli.report import report
 from kswarms.scenarios.cli.run import run
 from kswarms.scenarios.cli.status import replay, status
-from kswarms.scenarios.runs.run import package_version
-from kswarms.scenarios.runs.sweep import RunError
+from kswarms.scenarios.runs.outcome import RunError
 
 INTERRUPTED: Final = 130
 
@@ -91,7 +91,7 @@ def _complain(message: str, status: int) -> int:
 
 def _print_version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"kswarms {package_version()}")
+        typer.echo(f"kswarms {__version__}")
         raise typer.Exit
 
 

@@ -12,7 +12,6 @@ from kswarms.scenarios.catalogue.selecting import integers, words
 from kswarms.scenarios.cli.options import Jobs, directory, processes
 from kswarms.scenarios.cli.progress import tracked
 from kswarms.scenarios.runs.run import Run
-from kswarms.scenarios.runs.sweep import play_all
 
 
 def calibrate(
@@ -70,6 +69,8 @@ def calibrate(
 
 def _learned(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, float], None, None]:
     """Play runs with one learning swarm and yield each with the share of it that learned to attack."""
+    from kswarms.scenarios.runs.sweep import play_all
+
     with closing(play_all(runs, jobs)) as played:
         for run, outcome in tracked(played, "learning", len(runs)):
             yield run, outcome.policies[0]["attack_share"]

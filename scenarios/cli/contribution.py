@@ -14,8 +14,8 @@ from kswarms.scenarios.cli.options import Jobs, check_seed, directory, processes
 from kswarms.scenarios.cli.printing import print_table
 from kswarms.scenarios.cli.progress import tracked
 from kswarms.scenarios.description.scenario import MOST_SEEDS
+from kswarms.scenarios.runs.outcome import Outcome
 from kswarms.scenarios.runs.run import Run
-from kswarms.scenarios.runs.sweep import Outcome, play_all
 
 
 def contribution(
@@ -86,6 +86,7 @@ def contribution(
 
 def _play(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, Outcome], None, None]:
     from kswarms.scenarios.contribution.games import RECORD
+    from kswarms.scenarios.runs.sweep import play_all
 
     with closing(play_all(runs, jobs, RECORD)) as played:
         yield from tracked(played, "playing", len(runs))

@@ -10,7 +10,6 @@ import typer
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Watched, one_run
 from kswarms.scenarios.cli.progress import tracked
-from kswarms.scenarios.runs.sweep import name_of, naming
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -68,6 +67,7 @@ def film(
     out = out or Path(f"{name}{'.mp4' if sheet is None else '.png'}")
 
     from kswarms.analysis.film.files import check_film, write_film, write_sheet
+    from kswarms.scenarios.runs.play import run_errors
     from kswarms.scenarios.watch.player import Player
 
     if sheet is None:
@@ -81,10 +81,10 @@ def film(
         instants = [begin + (end - begin) * (k / (sheet - 1) if sheet > 1 else 1.0) for k in range(sheet)]
     if not out.parent.is_dir():
         raise InputError("out", str(out), "must be in a directory that is there")
-    with naming(name_of(found)):
+    with run_errors(str(found)):
         player = Player(game, found.seed)
     try:
-        pictures = _pictures(player, instants, size, name_of(found))
+        pictures = _pictures(player, instants, size, str(found))
         if sheet is None:
             write_film(out, pictures, fps)
         else:
@@ -102,10 +102,11 @@ def _check(field: str, value: object, allowed: bool, rule: str) -> None:
 def _pictures(player: "Player", instants: list[float], size: int, played: str) -> Iterator["Image"]:
     """Play to each instant and paint it; the end of the game is the last, if it comes before."""
     from kswarms.analysis.film.painter import ArenaPainter
+    from kswarms.scenarios.runs.play import run_errors
 
     painter = ArenaPainter(player.model.arena, player.game.body.radius, size)
     for instant in tracked(instants, "filming", len(instants)):
-        with naming(played):
+        with run_errors(played):
             player.seek(instant)
         yield _paint(painter, player.picture())
         if player.ended:

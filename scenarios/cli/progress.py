@@ -9,8 +9,8 @@ from typing import Final, TypeVar
 import typer
 
 from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.runs.outcome import Failure, Result
 from kswarms.scenarios.runs.run import Run
-from kswarms.scenarios.runs.sweep import Failure, Result
 
 KINDS: Final = ("bar", "json", "none")
 
@@ -155,9 +155,7 @@ def tracked(steps: Iterable[_Step], doing: str, total: int) -> Iterable[_Step]:
     from rich.progress import track
 
     console = Console(stderr=True)
-    return track(
-        steps, doing, total=total, console=console, transient=True, disable=not console.is_terminal
-    )
+    return track(steps, doing, total=total, console=console, transient=True, disable=not console.is_terminal)
 
 
 def clock(seconds: float) -> str:

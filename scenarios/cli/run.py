@@ -125,9 +125,9 @@ def _play(
     with ExitStack() as stack:
         executor = None
         if scheduler is not None:
-            from kswarms.scenarios.runs.dask import connected
+            from kswarms.scenarios.runs.dask import dask_executor
 
-            executor, jobs = stack.enter_context(connected(scheduler))
+            executor, jobs = stack.enter_context(dask_executor(scheduler))
         study = stack.enter_context(Study(out, command))
         runs = study.plan(scenarios, first_seed, records)
         for code in study.other_code:

@@ -44,14 +44,14 @@ def replay(
     wanted: Annotated[str, typer.Argument(metavar="RUN", help="A run of its tables: the column `run`.")],
 ) -> int:
     """Play one run again, print what comes out of it, and tell whether DIR has the same. Write nothing."""
-    from kswarms.scenarios.runs.sweep import name_of, play
+    from kswarms.scenarios.runs.play import play
     from kswarms.scenarios.study.database import FILE
     from kswarms.scenarios.study.ledger import Ledger
 
     with Ledger(directory / FILE) as ledger:
         run = ledger.run(wanted)
         kept = ledger.outcome(wanted)
-    typer.echo(name_of(run))
+    typer.echo(str(run))
     outcome = play(run)
     for row in (*outcome.swarms, *outcome.policies):
         typer.echo("  " + ", ".join(f"{name}={value!r}" for name, value in row.items()))

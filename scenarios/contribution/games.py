@@ -27,8 +27,9 @@ from kswarms.agents.streams import Streams
 from kswarms.model.description.game import Game
 from kswarms.scenarios.catalogue.selecting import words
 from kswarms.scenarios.description.toml_files import make_directory
+from kswarms.scenarios.runs.outcome import Outcome
 from kswarms.scenarios.runs.run import Run, digest
-from kswarms.scenarios.runs.sweep import Outcome, play_all
+from kswarms.scenarios.runs.sweep import play_all
 from kswarms.scenarios.study.parquet import arrow_schema
 
 FILE: Final = "contribution.parquet"

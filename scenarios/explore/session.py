@@ -14,8 +14,8 @@ from kswarms.agents.policies.learner import Learner
 from kswarms.scenarios.catalogue.selecting import USUAL_N, chosen, integers
 from kswarms.scenarios.description.scenario import Condition
 from kswarms.scenarios.explore.form import Form, SwarmForm, with_learning, with_parameter
+from kswarms.scenarios.runs.play import run_errors
 from kswarms.scenarios.runs.run import Run
-from kswarms.scenarios.runs.sweep import naming
 from kswarms.scenarios.watch.player import Player
 
 Act = Callable[[Callable[[], None]], None]
@@ -92,7 +92,7 @@ class Session:
             self._open(start)
             self.form = self._form(USUAL_N, 0)
         game = self.form.game()
-        with naming(f"the game of {self.source}"):
+        with run_errors(f"the game of {self.source}"):
             self.player = Player(game, self.form.seed)
         self.chosen = self._first_learner()
 

@@ -1,1 +1,1 @@
-"""Runs: one game with one seed, and how many of them are played."""
+"""Runs: one game with one seed each, played alone or in a sweep."""

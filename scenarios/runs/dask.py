@@ -1,4 +1,4 @@
-"""Workers elsewhere: a Dask cluster, which `dask.distributed` reaches by the address of its scheduler."""
+"""Play runs on a Dask cluster."""
 
 from collections.abc import Iterator
 from concurrent.futures import Executor
@@ -7,22 +7,22 @@ from typing import Final
 
 from kswarms.agents.common.errors import InputError
 
-_FEWEST_AT_ONCE: Final = 32
-"""Runs that a cluster is taken to play at the same time at least, for it may grow."""
-_PATIENCE: Final = 10
-"""Time for a scheduler to answer (s)."""
+_MIN_RUNS: Final = 32
+"""Minimum number of runs submitted at the same time, since a cluster may grow."""
+_TIMEOUT: Final = 10
+"""Connection timeout (s)."""
 
 
 @contextmanager
-def connected(address: str) -> Iterator[tuple[Executor, int]]:
-    """Connect to a cluster, and yield an executor that plays on it and how many runs it plays at once.
+def dask_executor(address: str) -> Iterator[tuple[Executor, int]]:
+    """Connect to a cluster; yield an executor that plays on it and its number of parallel runs.
 
-    When the connection ends, what waits is dropped; what is played then comes to its end on its own.
+    On exit, waiting tasks are cancelled; tasks that are running finish unnoticed.
 
     Parameters
     ----------
     address : str
-        Of the scheduler, as ``tcp://host:8786``.
+        Address of the scheduler, as ``tcp://host:8786``.
 
     Raises
     ------
@@ -35,14 +35,14 @@ def connected(address: str) -> Iterator[tuple[Executor, int]]:
     except ImportError as error:
         raise InputError("scheduler", address, "needs Dask: pip install 'kswarms[cluster]'") from error
     try:
-        get_address_host_port(address)  # a client of no address at all would hang when it is thrown away
-        client = Client(address, timeout=_PATIENCE, set_as_default=False)
+        get_address_host_port(address)  # the client of a malformed address hangs when it is deleted
+        client = Client(address, timeout=_TIMEOUT, set_as_default=False)
     except (OSError, ValueError) as error:
         reason = " ".join(str(error).split())
         raise InputError(
             "scheduler", address, f"must be the address of a Dask scheduler ({reason})"
         ) from error
     with client:
-        # Not pure: Dask would else take two runs of the same text for one, and keep what came out.
+        # Not pure: Dask would treat equal runs as one task and cache its result.
         executor = client.get_executor(pure=False)
-        yield executor, max(_FEWEST_AT_ONCE, sum(client.nthreads().values()))
+        yield executor, max(_MIN_RUNS, sum(client.nthreads().values()))

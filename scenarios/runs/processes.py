@@ -1,37 +1,41 @@
-"""Processes on this machine that play runs, replaced by new ones now and then, and when one dies."""
+"""Play runs in worker processes of this machine, which are replaced regularly and when one dies."""
 
 import os
 import signal
 import threading
 from collections import Counter, deque
 from collections.abc import Generator, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import active_children, get_context, parent_process
 from multiprocessing.synchronize import Event
 from typing import Any, Final
 
 from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.runs.executor import play_through
+from kswarms.scenarios.runs.outcome import Failure, Result
 from kswarms.scenarios.runs.run import Run
-from kswarms.scenarios.runs.sweep import Failure, Outcome, Result, play_through
 
-GAMES_A_WORKER: Final = 2500
-"""Games after which worker processes are replaced by new ones."""
+GAMES_PER_WORKER: Final = 2500
+"""Games after which worker processes are replaced, which bounds the memory that Mesa keeps in each."""
 
 TRIES: Final = 3
-"""A run during which a worker process died is tried so often in all."""
+"""A run is failed when its worker died this many times while it was played alone."""
+
+_NO_START: Final = 'needs worker processes, and none started: is `if __name__ == "__main__"` missing?'
+_DEATHS: Final = f"its worker process died {TRIES} times: killed or out of memory?"
 
 
-def in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[Result, None, None]:
-    """Play runs in processes of this machine.
+def play_in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[Result, None, None]:
+    """Play runs in worker processes.
 
-    A process that is killed breaks the executor, and which of the runs then played killed it (that took
-    too much memory, say) cannot be told. So these are tried again, one at a time.
+    A process that dies breaks the executor, and any of the runs played then may be the cause (too much
+    memory, for example). These runs are retried one at a time.
 
     Parameters
     ----------
     waiting : deque of Run
-        What is played, in order.
+        The runs, in order.
     jobs : int
         Number of processes.
     record : str
@@ -40,54 +44,44 @@ def in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[Resul
     Raises
     ------
     InputError
-        If no process comes up, since each would run the calling script anew.
+        If no process starts, because the calling script has no main guard.
     """
-    # Fresh workers for each portion bound what Mesa leaves behind in a process. The executor's own
-    # `max_tasks_per_child` hangs in Python 3.11 (CPython issue 115634).
-    while waiting:
-        portion = deque(waiting.popleft() for _ in range(min(len(waiting), jobs * GAMES_A_WORKER)))
-        suspects: deque[Run] = deque()
-        for run, result, seconds in _in_fresh_processes(portion, jobs, 2 * jobs, record):
-            if result is None:
-                suspects.append(run)
-            else:
-                yield run, result, seconds
-        waiting.extendleft(reversed(portion))
-        yield from _one_at_a_time(suspects, record)
+    suspects: deque[Run] = deque()
+    deaths: Counter[str] = Counter()
+    while waiting or suspects:
+        if alone := bool(suspects):
+            batch, workers, at_once = suspects, 1, 1
+        else:
+            # `max_tasks_per_child` of the executor hangs in Python 3.11, so each batch has a new executor.
+            size = min(len(waiting), jobs * GAMES_PER_WORKER)
+            batch, workers, at_once = deque(waiting.popleft() for _ in range(size)), jobs, 2 * jobs
+        with _new_workers(workers) as (executor, started):
+            for run, result, seconds in play_through(executor, batch, at_once, record):
+                if result is not None:
+                    yield run, result, seconds
+                    continue
+                if not started.is_set():
+                    raise InputError("jobs", jobs, _NO_START)
+                deaths[run.digest] += alone
+                if deaths[run.digest] < TRIES:
+                    suspects.appendleft(run)
+                else:
+                    yield run, Failure(_DEATHS), 0.0
+        if not alone:
+            waiting.extendleft(reversed(batch))
 
 
-def _one_at_a_time(suspects: deque[Run], record: str) -> Generator[Result, None, None]:
-    tries = Counter(run.digest for run in suspects)
-    while suspects:
-        for run, result, seconds in _in_fresh_processes(suspects, 1, 1, record):
-            tries[run.digest] += 1
-            if result is not None:
-                yield run, result, seconds
-            elif tries[run.digest] < TRIES:
-                suspects.appendleft(run)
-            else:
-                yield (
-                    run,
-                    Failure(f"a worker process died during it, {TRIES} times: killed, or short of memory?"),
-                    0.0,
-                )
-
-
-def _in_fresh_processes(
-    waiting: deque[Run], jobs: int, at_once: int, record: str
-) -> Generator[tuple[Run, Outcome | Failure | None, float], None, None]:
+@contextmanager
+def _new_workers(jobs: int) -> Iterator[tuple[Executor, Event]]:
+    """Yield an executor with new processes, and an event that is set when one of them has started."""
     others = set(active_children())
     context = get_context("spawn")
     started = context.Event()
-    executor = _Processes(jobs, context, _begin, (started,))
+    executor = _Workers(jobs, context, _start_worker, (started,))
     try:
-        for run, result, seconds in play_through(executor, waiting, at_once, record):
-            if result is None and not started.is_set():
-                guard = 'if __name__ == "__main__"'
-                raise InputError("jobs", jobs, f"needs processes, and none came up: is there no {guard}?")
-            yield run, result, seconds
+        yield executor, started
     except BaseException:
-        # Ctrl-C, or nobody wants the rest: do not wait for games that may take minutes.
+        # After Ctrl-C, or when the caller stops: do not wait for games that may take minutes.
         for worker in set(active_children()) - others:
             worker.terminate()
         raise
@@ -95,30 +89,24 @@ def _in_fresh_processes(
         executor.shutdown(cancel_futures=True)
 
 
-class _Processes(ProcessPoolExecutor):
+class _Workers(ProcessPoolExecutor):
     def submit(self, *arguments: Any, **options: Any) -> Future[Any]:
-        # Submitting starts the workers, and they inherit the mask: Ctrl-C, which a terminal sends to them
-        # too, is left to this process from their first moment on.
-        with _interrupts_held():
+        # Processes start here and inherit the signal mask: only the parent handles Ctrl-C, which a terminal
+        # sends to all of them.
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+        try:
             return super().submit(*arguments, **options)
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
-@contextmanager
-def _interrupts_held() -> Iterator[None]:
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-
-
-def _begin(started: Event) -> None:
-    """Say that this worker came up, and let it end when its parent does, even if that is killed."""
+def _start_worker(started: Event) -> None:
     started.set()
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+    threading.Thread(target=_exit_with_parent, daemon=True).start()
 
 
-def _end_with_parent() -> None:
+def _exit_with_parent() -> None:
+    """End this process when its parent ends, even if the parent is killed."""
     parent = parent_process()
     if parent is not None:
         parent.join()

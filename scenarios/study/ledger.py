@@ -9,10 +9,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from kswarms import __version__
 from kswarms.agents.common.errors import InputError
 from kswarms.model.description.game import Game
-from kswarms.scenarios.runs.run import Run, code_version, digest, package_version
-from kswarms.scenarios.runs.sweep import Failure, Outcome
+from kswarms.scenarios.runs.outcome import Failure, Outcome
+from kswarms.scenarios.runs.run import Run, code_version, digest
 from kswarms.scenarios.study.database import FILE, Database
 
 
@@ -65,7 +66,7 @@ class Ledger(Database):
             self._db.executemany(
                 "INSERT OR IGNORE INTO runs (run, game, seed, version)"
                 " SELECT ?, id, ?, ? FROM games WHERE description = ?",
-                ((run.digest, run.seed, package_version(), games[run.game]) for run in runs),
+                ((run.digest, run.seed, __version__, games[run.game]) for run in runs),
             )
             self._db.executemany(
                 "INSERT OR REPLACE INTO points VALUES (?, ?, ?, ?, ?)",
@@ -75,11 +76,11 @@ class Ledger(Database):
     def _refuse_mixtures(self, curves: dict[tuple[str, str], str]) -> None:
         directory = str(self.path.parent)
         for (version,) in self._db.execute("SELECT DISTINCT version FROM runs"):
-            if version != package_version():
+            if version != __version__:
                 raise InputError(
                     "out",
                     directory,
-                    f"has runs of kswarms {version}, this is {package_version()}; name another",
+                    f"has runs of kswarms {version}, this is {__version__}; name another",
                 )
         known = {
             (scenario, condition): text

@@ -9,8 +9,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from kswarms.agents.common.columns import ARM, RECORDED_TABLES, SCHEMA_VERSION, TABLES, Column
+from kswarms.scenarios.runs.outcome import Outcome
 from kswarms.scenarios.runs.run import Run
-from kswarms.scenarios.runs.sweep import Outcome
 from kswarms.scenarios.study.ledger import Ledger, Point
 
 _KINDS: Final = {"text": pa.string(), "integer": pa.int64(), "real": pa.float64(), "boolean": pa.bool_()}

@@ -21,12 +21,14 @@ from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import Any, Final, Self, TextIO
 
+from kswarms import __version__
 from kswarms.agents.common.atomic_files import UNFINISHED, remove_unfinished
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.description.toml_files import make_directory, write_json
-from kswarms.scenarios.runs.run import Run, code_version, describe_curve, expand, package_version
-from kswarms.scenarios.runs.sweep import Failure, Outcome, Result, sweep
+from kswarms.scenarios.runs.outcome import Failure, Outcome, Result
+from kswarms.scenarios.runs.run import Run, code_version, describe_curve, expand
+from kswarms.scenarios.runs.sweep import sweep
 from kswarms.scenarios.study.database import FILE
 from kswarms.scenarios.study.ledger import Ledger
 from kswarms.scenarios.study.summary import codes
@@ -198,7 +200,7 @@ class Study:
 
     def _manifest(self) -> dict[str, Any]:
         return {
-            "kswarms": package_version(),
+            "kswarms": __version__,
             "code": code_version(),
             "entropy": _ENTROPY,
             "scenarios": self._ledger.scenarios(),
@@ -277,7 +279,7 @@ def _about(command: str) -> dict[str, Any]:
         "command": command,
         "started": _now(),
         "status": "running, or killed",
-        "kswarms": package_version(),
+        "kswarms": __version__,
         "code": code_version(),
         "python": platform.python_version(),
         "libraries": {name: metadata.version(name) for name in needed},

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from kswarms.agents.learning.bandit import Bandit
 from kswarms.agents.learning.selection_rules import FORGOTTEN, UCB
 from kswarms.agents.policies.learner import Learner
+from kswarms.scenarios.runs.play import finished_game
 from kswarms.scenarios.runs.run import Run
-from kswarms.scenarios.runs.sweep import name_of, naming
 
 if TYPE_CHECKING:
     from kswarms.model.game_model import GameModel
@@ -125,19 +125,9 @@ def conflicts_of(run: Run) -> list[ConflictAccount]:
     RunError
         If the game fails.
     """
-    from kswarms.model.game_model import GameModel
-
-    model = None
-    try:
-        with naming(name_of(run)):
-            model = GameModel(run.game, seed=run.seed, record="conflicts")
-            model.play()
-        return sorted(
-            Accounts(model).take(), key=lambda account: (account.row["start"], account.row["robot"])
-        )
-    finally:
-        if model is not None:
-            model.forget()
+    with finished_game(run, "conflicts") as model:
+        accounts = Accounts(model).take()
+        return sorted(accounts, key=lambda account: (account.row["start"], account.row["robot"]))
 
 
 TOLD: Final = (

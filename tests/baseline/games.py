@@ -18,8 +18,8 @@ from kswarms.model.description.parameters import parse_parameters
 from kswarms.model.game_model import GameModel
 from kswarms.model.recorder import save_policies
 from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.runs.play import play
 from kswarms.scenarios.runs.run import Run, digest
-from kswarms.scenarios.runs.sweep import play
 
 FILE: Final = Path(__file__).with_name("digests.json")
 RECORDS: Final = "conflicts,robots,trajectory"

@@ -14,8 +14,8 @@ from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.cli import run as run_command
 from kswarms.scenarios.description.scenario import Scenario
+from kswarms.scenarios.runs.outcome import RunError
 from kswarms.scenarios.runs.run import expand
-from kswarms.scenarios.runs.sweep import RunError
 
 CONDITIONS = [
     condition.replace(name="") for scenario in CATALOGUE.values() for condition in scenario.conditions

@@ -15,7 +15,7 @@ from distributed import Client, LocalCluster
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.description.scenario import Condition, Scenario, SwarmRule
-from kswarms.scenarios.runs.dask import connected
+from kswarms.scenarios.runs.dask import dask_executor
 from kswarms.scenarios.runs.run import expand
 from kswarms.scenarios.runs.sweep import play_all, sweep
 
@@ -71,7 +71,7 @@ def test_a_worker_of_the_cluster_that_is_killed_loses_nothing(cluster: LocalClus
     came = {}
     with (
         Client(cluster) as client,
-        connected(cluster.scheduler_address) as (executor, jobs),
+        dask_executor(cluster.scheduler_address) as (executor, jobs),
         closing(sweep(runs, jobs, executor=executor)) as played,
     ):
         cluster.wait_for_workers(2)
@@ -97,7 +97,7 @@ def test_a_sweep_that_nobody_listens_to_any_more_leaves_nothing_on_the_cluster(c
         return len(dask_scheduler.tasks)
 
     with Client(cluster) as client:
-        with connected(cluster.scheduler_address) as (executor, jobs):
+        with dask_executor(cluster.scheduler_address) as (executor, jobs):
             played = sweep(expand([SMALL.replace(densities=(40, 50), seeds=100)]), jobs, executor=executor)
             next(played)
             wait_until(lambda: client.run_on_scheduler(tasks) > 30, "few tasks are on their way")
@@ -106,15 +106,15 @@ def test_a_sweep_that_nobody_listens_to_any_more_leaves_nothing_on_the_cluster(c
 
 
 def test_a_cluster_needs_dask_and_a_scheduler_that_answers(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("kswarms.scenarios.runs.dask._PATIENCE", 1)
+    monkeypatch.setattr("kswarms.scenarios.runs.dask._TIMEOUT", 1)
     with (
         pytest.raises(InputError, match="must be the address of a Dask scheduler"),
-        connected("tcp://127.0.0.1:1"),
+        dask_executor("tcp://127.0.0.1:1"),
     ):
         pass
     monkeypatch.setitem(sys.modules, "distributed", None)
     with (
         pytest.raises(InputError, match=r"needs Dask: pip install 'kswarms\[cluster\]'"),
-        connected("tcp://x:1"),
+        dask_executor("tcp://x:1"),
     ):
         pass

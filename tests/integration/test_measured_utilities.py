@@ -17,8 +17,8 @@ from kswarms.analysis.results.records import read_conflicts
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.game_model import GameModel
 from kswarms.scenarios.description.scenario import Condition, Scenario, SwarmRule
+from kswarms.scenarios.runs.play import play
 from kswarms.scenarios.runs.run import expand
-from kswarms.scenarios.runs.sweep import play
 from kswarms.scenarios.study.study import Study
 
 ALPHA = {1: 0.5, 2: 1.0, 3: 2.0}

@@ -10,12 +10,13 @@ import mesa
 import pyarrow.parquet as pq
 import pytest
 
+from kswarms import __version__
 from kswarms.model.foraging import ForagingModel
 from kswarms.model.game_model import GameModel
 from kswarms.scenarios.cli import invoke
-from kswarms.scenarios.runs import run as runs_module
+from kswarms.scenarios.runs.outcome import Failure
+from kswarms.scenarios.runs.play import play
 from kswarms.scenarios.runs.run import expand
-from kswarms.scenarios.runs.sweep import Failure, play
 from kswarms.scenarios.study.database import FILE
 from kswarms.scenarios.study.ledger import Ledger, find_run
 from kswarms.scenarios.study.study import Study
@@ -159,7 +160,7 @@ def test_missing_runs_are_counted(capsys: pytest.CaptureFixture[str]) -> None:
 def test_the_manifest_tells_how_the_results_came_about() -> None:
     assert invoke([*RUN, "--seeds", "1", "--first-seed", "3"]) == 0
     manifest = json.loads(Path("results/manifest.json").read_text())
-    assert manifest["kswarms"] == runs_module.version("kswarms")
+    assert manifest["kswarms"] == __version__
     assert "SeedSequence(seed" in manifest["entropy"]
     (session,) = manifest["sessions"]
     assert session["command"] == f"kswarms {shlex.join(RUN)} --seeds 1 --first-seed 3"

@@ -11,10 +11,10 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
+from kswarms import __version__
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.description.scenario import Condition, SwarmRule
-from kswarms.scenarios.runs import run as runs_module
 from kswarms.scenarios.study import study as study_module
 from kswarms.scenarios.study.database import FILE
 from kswarms.scenarios.study.ledger import find_run
@@ -140,8 +140,8 @@ def test_runs_of_another_version_are_refused(
     assert invoke([*RUN, "--seeds", "1"]) == 0
     before = contents("results")
     for module in ("runs.run", "study.ledger", "study.study"):
-        monkeypatch.setattr(f"kswarms.scenarios.{module}.package_version", lambda: "9.0.0")
-    version = runs_module.version("kswarms")
+        monkeypatch.setattr(f"kswarms.scenarios.{module}.__version__", "9.0.0")
+    version = __version__
     assert invoke(RUN) == 2
     assert capsys.readouterr().err == (
         f"kswarms: out='results': has runs of kswarms {version}, this is 9.0.0; name another\n"
@@ -153,8 +153,8 @@ def test_runs_of_other_code_are_told_of(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with monkeypatch.context() as patch:
-        for module in ("kswarms.scenarios.study.ledger", "kswarms.scenarios.runs.sweep"):
-            patch.setattr(f"{module}.code_version", lambda: "0.1.0 before")
+        for module in ("study.ledger", "runs.play", "runs.sweep"):
+            patch.setattr(f"kswarms.scenarios.{module}.code_version", lambda: "0.1.0 before")
         assert invoke([*RUN, "--seeds", "1"]) == 0
         assert capsys.readouterr().err == ""
     assert invoke(RUN) == 0

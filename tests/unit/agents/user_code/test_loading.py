@@ -12,8 +12,9 @@ from kswarms.agents.user_code.loading import blaming, load_class, sources
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.game_model import GameModel
 from kswarms.model.recorder import policy_rows, save_policies
+from kswarms.scenarios.runs.outcome import RunError
+from kswarms.scenarios.runs.play import play
 from kswarms.scenarios.runs.run import Run, digest
-from kswarms.scenarios.runs.sweep import RunError, play
 
 # Not imported: it is found as users name it.
 OWN = (Path(__file__).parents[3] / "helpers" / "users_own.py").read_text()

@@ -8,8 +8,8 @@ import pytest
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.cli import progress
 from kswarms.scenarios.cli.progress import Count, clock, told, tracked
+from kswarms.scenarios.runs.outcome import Failure, Outcome, Result
 from kswarms.scenarios.runs.run import Run, expand
-from kswarms.scenarios.runs.sweep import Failure, Outcome, Result
 
 RUNS = sorted(
     expand([CATALOGUE["fig-6.1a"].replace(densities=(6, 30), seeds=2)]),

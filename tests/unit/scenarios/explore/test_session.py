@@ -11,8 +11,8 @@ from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.explore import session as session_module
 from kswarms.scenarios.explore.session import Session
 from kswarms.scenarios.explore.views import curves_of, frame_of, scene_of
+from kswarms.scenarios.runs.outcome import RunError
 from kswarms.scenarios.runs.run import Run, digest
-from kswarms.scenarios.runs.sweep import RunError
 
 COWARD = """
 class Coward:

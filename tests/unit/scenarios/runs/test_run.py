@@ -94,7 +94,7 @@ def test_the_digest_covers_game_seed_and_version(monkeypatch: pytest.MonkeyPatch
         digest(GAME.replace(parameters=GAME.parameters.replace(friction=0.5)), 0),
         digest(CATALOGUE["fig-6.1c"].game("", 8), 0),
     }
-    monkeypatch.setattr(module, "package_version", lambda: "0.0.0")
+    monkeypatch.setattr(module, "__version__", "0.0.0")
     others.add(digest(GAME, 0))
     assert len(others - {name}) == 6
 
@@ -151,4 +151,4 @@ def test_a_curve_is_described_by_everything_but_the_number_of_robots() -> None:
 
 def test_the_code_is_named_by_the_version_and_what_it_is() -> None:
     assert re.fullmatch(r"\S+ [0-9a-f]{12}", code_version())
-    assert code_version().startswith(f"{module.package_version()} ")
+    assert code_version().startswith(f"{module.__version__} ")

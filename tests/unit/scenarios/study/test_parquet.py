@@ -10,8 +10,8 @@ import pytest
 
 from kswarms.agents.common.columns import RECORDED_TABLES
 from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.runs.outcome import Failure, Outcome
 from kswarms.scenarios.runs.run import Run, expand
-from kswarms.scenarios.runs.sweep import Failure, Outcome
 from kswarms.scenarios.study import parquet as tables
 from kswarms.scenarios.study.database import FILE
 from kswarms.scenarios.study.ledger import Ledger

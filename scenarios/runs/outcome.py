@@ -1,0 +1,60 @@
+"""The result of a run: its outcome or its failure."""
+
+import traceback
+from dataclasses import dataclass
+from typing import Any, Self
+
+from kswarms.scenarios.runs.run import Run
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The results of a game; `kswarms.agents.common.columns` describes the columns.
+
+    Attributes
+    ----------
+    swarms : list of dict
+        A row of ``runs.parquet`` for each swarm, without the columns of its point.
+    policies : list of dict
+        Rows of ``policies.parquet``, likewise; empty if no swarm learns.
+    records : dict of str to dict of str to list
+        The recorded tables, each as columns by name.
+    """
+
+    swarms: list[dict[str, Any]]
+    policies: list[dict[str, Any]]
+    records: dict[str, dict[str, list[Any]]]
+
+
+@dataclass(frozen=True)
+class Failure:
+    """The error of a run, in one line, and its traceback (empty if there is none)."""
+
+    error: str
+    trace: str = ""
+
+    @classmethod
+    def of(cls, error: BaseException) -> Self:
+        """Describe an exception."""
+        line = " ".join(f"{type(error).__name__}: {error}".split())
+        return cls(line, "".join(traceback.format_exception(error)))
+
+
+Result = tuple[Run, Outcome | Failure, float]
+"""A run, its outcome or failure, and its CPU time (s)."""
+
+
+class RunError(RuntimeError):
+    """A run failed.
+
+    Parameters
+    ----------
+    message : str
+        The run and its error.
+    trace : str
+        The traceback of the error.
+    """
+
+    def __init__(self, message: str, trace: str = "") -> None:
+        super().__init__(message)
+        self.trace = trace

@@ -1,0 +1,90 @@
+"""Play one run."""
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from kswarms.model.game_model import GameModel
+from kswarms.model.recorder import policy_rows
+from kswarms.scenarios.runs.outcome import Failure, Outcome, RunError
+from kswarms.scenarios.runs.run import Run, code_version, require_unchanged
+
+
+def play(run: Run, record: str = "") -> Outcome:
+    """Play a run.
+
+    Parameters
+    ----------
+    run : Run
+        The game and its seed.
+    record : str
+        Names of the tables to record, separated by commas.
+
+    Raises
+    ------
+    RunError
+        If the game fails.
+    """
+    with finished_game(run, record) as model:
+        return Outcome(model.results(), policy_rows(model), model.tables())
+
+
+@contextmanager
+def finished_game(run: Run, record: str = "") -> Iterator[GameModel]:
+    """Play a run and yield its model at the end of the game; free the model afterwards.
+
+    Parameters
+    ----------
+    run, record
+        As for `play`.
+
+    Raises
+    ------
+    RunError
+        If the game fails, or whatever is done with the model.
+    """
+    with run_errors(str(run)):
+        require_unchanged(run)
+        model = GameModel(run.game, seed=run.seed, record=record)
+        try:
+            model.play()
+            yield model
+        finally:
+            model.forget()
+
+
+@contextmanager
+def run_errors(game: str) -> Iterator[None]:
+    """Raise every error as a `RunError` that names the game, since user-defined policies may raise anything.
+
+    Parameters
+    ----------
+    game : str
+        Name of the game in the message.
+    """
+    try:
+        yield
+    except (Exception, SystemExit) as error:
+        failure = Failure.of(error)
+        raise RunError(f"{game} failed: {failure.error}", failure.trace) from error
+
+
+def attempt(run: Run, record: str, code: str) -> tuple[Outcome | Failure, float]:
+    """Play a run and return its result, a failure included, with its CPU time (s).
+
+    Parameters
+    ----------
+    run, record
+        As for `play`.
+    code : str
+        The required `code_version`; a worker of a cluster may have another.
+    """
+    if code != code_version():
+        return Failure(f"the worker has kswarms {code_version()}, it must have {code}"), 0.0
+    started = time.thread_time()
+    result: Outcome | Failure
+    try:
+        result = play(run, record)
+    except RunError as error:
+        result = Failure.of(error.__cause__ or error)
+    return result, time.thread_time() - started
