@@ -1,4 +1,4 @@
-"""Figures as PNG and SVG: the same bytes for the same figure, in files written whole or not at all."""
+"""Figures as PNG and SVG files; the same figure always has the same bytes."""
 
 import warnings
 from io import BytesIO
@@ -11,19 +11,19 @@ from matplotlib.figure import Figure
 from kswarms.agents.common.atomic_files import whole
 from kswarms.agents.common.errors import InputError
 
-DOTS_PER_INCH = 150
+DOTS_PER_INCH: Final = 150
 FORMATS: Final = ("png", "svg")
 
 
-class Picture(NamedTuple):
-    """A drawn figure.
+class EncodedFigure(NamedTuple):
+    """A figure in all formats.
 
     Attributes
     ----------
     files : dict of str to bytes
         The figure in each of `FORMATS`.
     width, height : int
-        Size for a page (CSS pixels, 96 an inch).
+        Size on a page (CSS pixels, 96 per inch).
     """
 
     files: dict[str, bytes]
@@ -36,68 +36,72 @@ class Picture(NamedTuple):
         return min(self.files, key=lambda kind: len(self.files[kind]))
 
 
-def encoded(figure: Figure, kind: str) -> bytes:
-    """Return a figure as the bytes of a file.
+def encode(figure: Figure, kind: str) -> bytes:
+    """Return a figure in a format.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
-        What is drawn.
+        Figure.
     kind : {'png', 'svg'}
         Format.
 
     Raises
     ------
     InputError
-        If there is no such format.
+        The format is unknown.
     """
     if kind not in FORMATS:
         raise InputError("format", kind, f"must be one of {', '.join(FORMATS)}")
     content = BytesIO()
-    # Without these an SVG has the date in it and identifiers at random.
+    # By default an SVG contains the date and random identifiers.
     with mpl.rc_context({"svg.hashsalt": "kswarms"}), warnings.catch_warnings():
-        # A user's title may be in a script that the font lacks: a box in the picture says so.
+        # The font may lack the script of a user's title; the figure then shows boxes.
         warnings.filterwarnings("ignore", "Glyph .* missing from font")
         metadata = {"Date": None} if kind == "svg" else None
         figure.savefig(content, format=kind, dpi=DOTS_PER_INCH, metadata=metadata)
     return content.getvalue()
 
 
-def drawn(figure: Figure) -> Picture:
-    """Draw a figure in every format.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        What is drawn; its layout is fixed by it.
-    """
+def encode_all(figure: Figure) -> EncodedFigure:
+    """Return a figure in all formats. This fixes the layout of the figure."""
     files = {}
     for kind in FORMATS:
-        files[kind] = encoded(figure, kind)
-        figure.set_layout_engine("none")  # laid out once is enough
+        files[kind] = encode(figure, kind)
+        figure.set_layout_engine("none")  # one layout serves all formats
     width, height = (round(96 * inches) for inches in figure.get_size_inches())
-    return Picture(files, width, height)
+    return EncodedFigure(files, width, height)
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a figure to a file, PNG or SVG by the file's suffix.
+    """Write a figure to a PNG or SVG file.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
-        What is drawn.
+        Figure.
     path : Path
-        The file; its folder is made if it is missing.
+        File; its suffix is the format. Missing folders are created.
 
     Raises
     ------
     InputError
-        If the suffix is of another format or the file cannot be written; then it is as it was.
+        The format is unknown, or the file cannot be written; then an existing file is unchanged.
     """
-    content = encoded(figure, path.suffix.removeprefix(".").lower())
+    write_file(path, encode(figure, path.suffix.removeprefix(".").lower()), "figures")
+
+
+def write_file(path: Path, content: bytes, field: str) -> None:
+    """Write a file atomically; missing folders are created.
+
+    Raises
+    ------
+    InputError
+        The file cannot be written; the error names `field`.
+    """
     try:
-        path.parent.mkdir(exist_ok=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
         with whole(path) as file:
             file.write_bytes(content)
     except OSError as error:
-        raise InputError("figures", str(path), "must be a place that can be written") from error
+        raise InputError(field, str(path), f"must be a writable file ({error.strerror or error})") from error

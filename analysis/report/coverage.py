@@ -1,4 +1,4 @@
-"""What a results directory covers of what could be played, and what is missing."""
+"""Comparison of the games in the results with those that the scenarios plan."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -10,18 +10,18 @@ from kswarms.analysis.text_tables import PrintedTable, span
 
 @dataclass(frozen=True)
 class Planned:
-    """A scenario as it is meant to be played.
+    """The games of a scenario.
 
     Attributes
     ----------
     title : str
-        What it is, in a line.
+        Title.
     conditions : tuple of str
-        Names of its curves.
+        Names of its conditions.
     densities : tuple of int
         Numbers of robots in all.
     seeds : int
-        Games at each density.
+        Games at each density of each condition.
     """
 
     title: str
@@ -31,7 +31,7 @@ class Planned:
 
 
 def coverage(runs: pd.DataFrame, plan: Mapping[str, Planned]) -> pd.DataFrame:
-    """Compare the games that there are with those that a plan asks for.
+    """Compare the games in the results with a plan.
 
     Parameters
     ----------
@@ -43,57 +43,51 @@ def coverage(runs: pd.DataFrame, plan: Mapping[str, Planned]) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        One row for each scenario of the plan, in its order: `scenario` (str), `games`, `planned` (int64):
-        games that there are and that it asks for, counted once for each curve; `missing` (str): what is not
-        there, empty for nothing. Games beside the plan, at other densities or seeds, do not count.
+        One row for each scenario, in the order of the plan: `scenario` (str); `games`, `planned` (int64), the
+        planned games that exist and their number, counted for each condition; `missing` (str), a description
+        of the missing games, empty if there are none. Games outside the plan do not count.
     """
     points = runs[["scenario", "condition", "n", "seed"]].drop_duplicates()
     rows = []
     for scenario, planned in plan.items():
-        of_plan = points[
+        found = points[
             (points["scenario"] == scenario)
             & points["condition"].isin(planned.conditions)
             & points["n"].isin(planned.densities)
             & (points["seed"] < planned.seeds)
         ]
-        wanted = len(planned.conditions) * len(planned.densities) * planned.seeds
-        missing = _missing(of_plan, planned) if len(of_plan) < wanted else ""
-        rows.append({"scenario": scenario, "games": len(of_plan), "planned": wanted, "missing": missing})
+        total = len(planned.conditions) * len(planned.densities) * planned.seeds
+        missing = _missing(found, planned) if len(found) < total else ""
+        rows.append({"scenario": scenario, "games": len(found), "planned": total, "missing": missing})
     return pd.DataFrame(rows, columns=["scenario", "games", "planned", "missing"])
 
 
-def _missing(points: pd.DataFrame, planned: Planned) -> str:
-    if points.empty:
+def _missing(found: pd.DataFrame, planned: Planned) -> str:
+    if found.empty:
         return "everything"
     parts = []
-    conditions = _absent(planned.conditions, points["condition"])
-    if conditions:
+    if conditions := _absent(planned.conditions, found["condition"]):
         parts.append(f"conditions {conditions}")
-    densities = _absent(planned.densities, points["n"])
-    if densities:
+    if densities := _absent(planned.densities, found["n"]):
         parts.append(f"N = {densities}")
-    seeds = points.groupby(["condition", "n"])["seed"].nunique()
+    seeds = found.groupby(["condition", "n"])["seed"].nunique()
     if seeds.min() < planned.seeds:
-        few, many = seeds.min(), seeds.max()
-        parts.append(f"seeds ({span(few, many)} of {planned.seeds})")
+        parts.append(f"seeds ({span(seeds.min(), seeds.max())} of {planned.seeds})")
     return "; ".join(parts) or "some conditions at some N"
 
 
-def _absent(wanted: Iterable[object], present: pd.Series) -> str:
-    there = set(present)
-    return ", ".join(str(value) for value in wanted if value not in there)
+def _absent(planned: Iterable[object], found: pd.Series) -> str:
+    present = set(found)
+    return ", ".join(str(value) for value in planned if value not in present)
 
 
-def printed(frame: pd.DataFrame) -> PrintedTable:
-    """Print what `coverage` returns; scenarios of which there is nothing go to the caption."""
+def coverage_table(frame: pd.DataFrame) -> PrintedTable:
+    """Return the result of `coverage` as a table of incomplete scenarios; the caption has the other ones."""
     absent = frame[frame["games"] == 0]["scenario"]
     partial = frame[(frame["games"] > 0) & (frame["missing"] != "")]
-    rows = [
-        [row["scenario"], str(row["games"]), str(row["planned"]), row["missing"]]
-        for row in partial.to_dict("records")
-    ]
     complete = int((frame["missing"] == "").sum())
     caption = f"{complete} of {len(frame)} scenarios are complete, {len(partial)} in part"
     if len(absent):
         caption += f"; not played: {', '.join(absent)}"
+    rows = partial[["scenario", "games", "planned", "missing"]].astype(str).to_numpy().tolist()
     return PrintedTable(["scenario", "games", "of", "missing"], rows, f"{caption}.")

@@ -1,7 +1,7 @@
-"""What a page of the report is made of, and the one file that it becomes.
+"""Elements of the report's page, and the files that are written of them.
 
-Chapters hold parts, parts hold text, pictures and tables. Everything is in the file: pictures and downloads
-are data URIs, there is no script and no address of another machine.
+A report has chapters, chapters have parts, and parts have text, figures and tables. The page is one HTML file
+that needs no network: images and downloads are data URIs, and there is no script.
 """
 
 import base64
@@ -12,148 +12,143 @@ from typing import Final
 from urllib.parse import quote
 
 import pandas as pd
-from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
-from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from kswarms.agents.common.atomic_files import whole
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.figures.files import Picture, drawn
-from kswarms.analysis.text_tables import PrintedTable
+from kswarms.analysis.figures.files import EncodedFigure, encode_all, write_file
+from kswarms.analysis.text_tables import TEMPLATES, PrintedTable
 
 _MIME: Final = {"png": "image/png", "svg": "image/svg+xml"}
 
 
 @dataclass(frozen=True)
-class Shown:
-    """A picture on the page.
+class PageFigure:
+    """A figure on the page.
 
     Attributes
     ----------
     name : str
-        Of its files, without suffix.
-    picture : Picture
-        What is shown.
+        Name of its files, without suffix.
+    image : EncodedFigure
+        The figure in all formats.
     alt : str
-        What it shows, in words, for those who do not see it.
+        Alternative text for readers who do not see it.
     caption : str
-        What stands below.
+        Text below it.
     """
 
     name: str
-    picture: Picture
+    image: EncodedFigure
     alt: str
     caption: str
 
     @property
     def uri(self) -> str:
-        """The picture as a data URI, in the smallest of its formats."""
-        kind = self.picture.smallest
-        return f"data:{_MIME[kind]};base64,{base64.b64encode(self.picture.files[kind]).decode()}"
+        """Data URI of the figure in its smallest format."""
+        kind = self.image.smallest
+        return f"data:{_MIME[kind]};base64,{base64.b64encode(self.image.files[kind]).decode()}"
 
     @property
     def files(self) -> dict[str, bytes]:
-        """The picture in every format by the name of its file."""
-        return {f"{self.name}.{kind}": content for kind, content in self.picture.files.items()}
+        """Content of the figure's files by name: PNG and SVG."""
+        return {f"{self.name}.{kind}": content for kind, content in self.image.files.items()}
 
 
 @dataclass(frozen=True)
-class Tabled:
-    """A table with its numbers, which the page offers as CSV, and its text, which it offers as Markdown.
+class PageTable:
+    """A table on the page, with downloads of its numbers (CSV) and its text (Markdown).
 
     Attributes
     ----------
     name : str
-        Of the files, without suffix.
+        Name of its files, without suffix.
     title : str
-        What it shows.
-    printed : PrintedTable
-        What is on the page.
+        Title.
+    table : PrintedTable
+        The table as shown.
     frame : pandas.DataFrame
         The numbers.
     """
 
     name: str
     title: str
-    printed: PrintedTable
+    table: PrintedTable
     frame: pd.DataFrame
 
     @property
-    def html(self) -> Markup:
-        """The table for the page; its text is escaped."""
-        return Markup(self.printed.to_html())
-
-    @property
     def files(self) -> dict[str, bytes]:
-        """The table as CSV, Markdown and HTML by the name of its file."""
+        """Content of the table's files by name: CSV, Markdown and HTML."""
         texts = {
             "csv": self.frame.to_csv(index=False),
-            "md": self.printed.to_markdown(),
-            "html": self.printed.to_html(),
+            "md": self.table.to_markdown(),
+            "html": self.table.to_html(),
         }
         return {f"{self.name}.{kind}": text.encode() for kind, text in texts.items()}
 
     @property
     def downloads(self) -> dict[str, str]:
-        """Data URIs of CSV and Markdown by the name of the file that each becomes."""
+        """Data URIs of CSV and Markdown by file name."""
         kinds = {f"{self.name}.csv": "text/csv", f"{self.name}.md": "text/markdown"}
         return {name: f"data:{kind};charset=utf-8,{quote(self.files[name])}" for name, kind in kinds.items()}
 
 
 @dataclass
 class Part:
-    """A heading with what stands below it.
+    """A section of a chapter.
 
     Attributes
     ----------
     id : str
-        Its anchor.
+        Anchor.
     title : str
-        Its heading.
+        Heading.
     text : list of str
         Paragraphs.
-    pictures : list of Shown
-        Side by side where there is room.
-    tables : list of Tabled
-        One below the other.
+    figures : list of PageFigure
+        Figures, side by side if the page is wide enough.
+    tables : list of PageTable
+        Tables, one below the other.
     source : str
-        Text that keeps its lines, as that of a file; empty for none.
+        Preformatted text; empty for none.
     """
 
     id: str
     title: str
     text: list[str] = field(default_factory=list)
-    pictures: list[Shown] = field(default_factory=list)
-    tables: list[Tabled] = field(default_factory=list)
+    figures: list[PageFigure] = field(default_factory=list)
+    tables: list[PageTable] = field(default_factory=list)
     source: str = ""
 
-    def show(self, name: str, figure: Figure, alt: str, caption: str) -> None:
-        """Draw a figure and add it, as in `Shown`."""
-        self.pictures.append(Shown(name, drawn(figure), alt, caption))
+    def add_figure(self, name: str, figure: Figure, alt: str, caption: str) -> None:
+        """Add a figure; see `PageFigure`."""
+        self.figures.append(PageFigure(name, encode_all(figure), alt, caption))
+
+    def add_table(self, name: str, title: str, table: PrintedTable, frame: pd.DataFrame) -> None:
+        """Add a table; see `PageTable`."""
+        self.tables.append(PageTable(name, title, table, frame))
 
 
-@dataclass
+@dataclass(frozen=True)
 class Chapter:
-    """A chapter of the report: its own text, then its parts."""
+    """A chapter of the report: anchor, title and at least one part."""
 
     id: str
     title: str
     parts: Sequence[Part]
-    text: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
 class Report:
-    """All that is reported.
+    """A report.
 
     Attributes
     ----------
     title : str
         Heading of the page.
     summary : sequence of str
-        Paragraphs below it.
+        Paragraphs below the heading.
     chapters : sequence of Chapter
-        What follows the table of contents.
+        Chapters; the table of contents lists them and their parts.
     """
 
     title: str
@@ -162,54 +157,36 @@ class Report:
 
     def to_html(self) -> str:
         """Return the page."""
-        environment = Environment(
-            loader=PackageLoader("kswarms.analysis.report", "templates"),
-            autoescape=select_autoescape(["html"]),
-            undefined=StrictUndefined,
-            trim_blocks=True,
-            lstrip_blocks=True,
-        )
-        return environment.get_template("report.html").render(
-            title=self.title, summary=self.summary, chapters=self.chapters
-        )
+        return TEMPLATES.get_template("report.html").render(report=self)
 
     def write_page(self, path: Path) -> None:
-        """Write the page to a file, whole or not at all.
+        """Write the page to a file.
 
         Raises
         ------
         InputError
-            The file cannot be written; then it is as it was.
+            The file cannot be written; then an existing file is unchanged.
         """
-        _write("out", path, self.to_html().encode())
+        write_file(path, self.to_html().encode(), "out")
 
     def write_files(self, folder: Path) -> int:
-        """Write each picture as PNG and SVG, each table as CSV, Markdown and HTML, and return how many files.
+        """Write figures as PNG and SVG, tables as CSV, Markdown and HTML; return the number of files.
 
         Raises
         ------
         InputError
-            The folder cannot be made or a file cannot be written.
+            The folder cannot be created, or a file cannot be written.
         """
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise InputError("files", str(folder), f"must be a folder ({error.strerror})") from error
-        items: list[Shown | Tabled] = []
+        contents: dict[str, bytes] = {}
         for chapter in self.chapters:
             for part in chapter.parts:
-                items += [*part.pictures, *part.tables]
-        contents = {name: content for item in items for name, content in item.files.items()}
+                items: list[PageFigure | PageTable] = [*part.figures, *part.tables]
+                for item in items:
+                    contents |= item.files
         for name, content in contents.items():
-            _write("files", folder / name, content)
+            write_file(folder / name, content, "files")
         return len(contents)
-
-
-def _write(field: str, path: Path, content: bytes) -> None:
-    try:
-        with whole(path) as file:
-            file.write_bytes(content)
-    except OSError as error:
-        raise InputError(
-            field, str(path), f"must be a place that can be written ({error.strerror})"
-        ) from error

@@ -1,4 +1,4 @@
-"""Where results and report come from: manifest and files of the directory, versions of libraries."""
+"""Provenance of results and report: files, manifest and versions of libraries."""
 
 import hashlib
 import json
@@ -12,7 +12,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.report.page import Part, Tabled
+from kswarms.analysis.report.page import Part
 from kswarms.analysis.text_tables import PrintedTable
 
 MANIFEST_FILE: Final = "manifest.json"
@@ -20,30 +20,29 @@ _LIBRARIES: Final = ("kswarms", "matplotlib", "networkx", "numpy", "pandas", "py
 
 
 def provenance_parts(directory: Path) -> list[Part]:
-    """Say what the results are, who wrote them and with what, as far as the directory tells.
+    """Describe the files of a results directory, the libraries of the report, and the manifest.
 
     Raises
     ------
     InputError
-        The manifest cannot be read.
+        A file or the manifest cannot be read.
     """
-    files = [_file(path) for path in sorted(directory.glob("*.parquet"))]
-    frame = pd.DataFrame(files)
-    rows = [[file["file"], str(file["rows"]), str(file["bytes"]), file["sha256"][:16]] for file in files]
-    table = PrintedTable(["file", "rows", "bytes", "SHA-256, first 16 digits"], rows, "")
+    described = [_describe(path) for path in sorted(directory.glob("*.parquet"))]
+    rows = [[each["file"], str(each["rows"]), str(each["bytes"]), each["sha256"][:16]] for each in described]
+    files = Part("files", "Files")
+    header = ["file", "rows", "bytes", "SHA-256, first 16 digits"]
+    table = PrintedTable(header, rows, "")
+    files.add_table("files", "Files of the results directory", table, pd.DataFrame(described))
     made_with = ", ".join(f"{name} {version(name)}" for name in _LIBRARIES)
-    parts = [
-        Part("files", "Files", tables=[Tabled("files", "Files of the results directory", table, frame)]),
-        Part("made-with", "This report", [f"Made with {made_with}, Python {platform.python_version()}."]),
-    ]
+    this = Part("made-with", "This report", [f"Made with {made_with}, Python {platform.python_version()}."])
     manifest = directory / MANIFEST_FILE
     if not manifest.is_file():
-        text = [f"The directory holds no {MANIFEST_FILE}: versions and commands of the runs are not known."]
-        return [*parts, Part("manifest", "Manifest", text)]
-    return [*parts, *_manifest_parts(_read(manifest))]
+        text = f"The directory has no {MANIFEST_FILE}: versions and commands of the runs are unknown."
+        return [files, this, Part("manifest", "Manifest", [text])]
+    return [files, this, *_manifest_parts(_read(manifest))]
 
 
-def _file(path: Path) -> dict[str, Any]:
+def _describe(path: Path) -> dict[str, Any]:
     try:
         rows = pq.read_metadata(path).num_rows
     except (OSError, pa.ArrowException) as error:
@@ -64,20 +63,18 @@ def _read(path: Path) -> dict[str, Any]:
 
 
 def _manifest_parts(content: dict[str, Any]) -> list[Part]:
-    """Return short entries as one text, and each that has lines of its own, as scenarios have, as a part."""
+    """Return one part for all short entries, and a part for each long entry, such as the scenarios."""
     long = {key: value for key, value in content.items() if isinstance(value, dict | list) and value}
-    short = {key: value for key, value in content.items() if key not in long}
-    lines = "\n".join(f"{key}: {value}" for key, value in short.items())
+    lines = "\n".join(f"{key}: {value}" for key, value in content.items() if key not in long)
     parts = [Part("manifest", f"Manifest ({MANIFEST_FILE})", source=lines)]
-    for key, value in long.items():
-        parts.append(Part(f"manifest-{key}", f"Manifest: {key}", source=_text(value)))
-    return parts
+    return parts + [
+        Part(f"manifest-{key}", f"Manifest: {key}", source=_text(value)) for key, value in long.items()
+    ]
 
 
 def _text(value: Any) -> str:
-    if isinstance(value, dict) and all(isinstance(text, str) for text in value.values()):
-        several_lines = any("\n" in text for text in value.values())
-        return ("\n\n" if several_lines else "\n").join(
-            f"# {key}\n{text.strip()}" if several_lines else f"{key}: {text}" for key, text in value.items()
-        )
-    return json.dumps(value, indent=2, ensure_ascii=False)
+    if not isinstance(value, dict) or not all(isinstance(text, str) for text in value.values()):
+        return json.dumps(value, indent=2, ensure_ascii=False)
+    if any("\n" in text for text in value.values()):
+        return "\n\n".join(f"# {key}\n{text.strip()}" for key, text in value.items())
+    return "\n".join(f"{key}: {text}" for key, text in value.items())

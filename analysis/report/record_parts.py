@@ -1,6 +1,6 @@
-"""The parts of the report about records: networks and jams, how policies emerge, where conflicts happen."""
+"""Parts of the report about recorded games: networks and jams, emerging policies, places of conflicts."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -8,10 +8,9 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
-from kswarms.analysis.figures import emergence, networks
-from kswarms.analysis.figures import heat_maps as maps
+from kswarms.analysis.figures import emergence, heat_maps, networks
 from kswarms.analysis.film.painter import Places
-from kswarms.analysis.report.page import Part, Tabled
+from kswarms.analysis.report.page import Part
 from kswarms.analysis.results.records import (
     CONFLICTS_FILE,
     ROBOTS_FILE,
@@ -19,18 +18,41 @@ from kswarms.analysis.results.records import (
     read_robots,
     recorded_runs,
 )
-from kswarms.analysis.text_tables import NONE, PrintedTable
+from kswarms.analysis.text_tables import PrintedTable, number
 
-GAMES: Final = 4
-"""Recorded games of a density that the report looks into: conflicts of twenty would not tell more."""
+MAX_GAMES: Final = 4
+"""Maximum number of recorded games of a density that the report uses; more would show the same."""
 
 PlacesOf = Callable[[str, str, int, int], Places | None]
-"""Stations and bases of a scenario, condition, number of robots and seed; None if they are not known."""
+"""Returns the arena of a scenario, condition, number of robots and seed; None if it is unknown."""
+
+_NETWORK_COLUMNS: Final = {
+    "n": ("N", ".0f"),
+    "seed": ("seed", ".0f"),
+    "meetings": ("conflicts", ".0f"),
+    "met": ("pairs\nthat met", ".2f"),
+    "degree": ("degree", ".1f"),
+    "strength": ("strength\n(s)", ".0f"),
+    "inter": ("time\ninter-swarm", ".2f"),
+    "assortativity": ("assortativity\nof pairs", ".2f"),
+    "assortativity_time": ("assortativity\nby time", ".2f"),
+    "chance": ("if all met\nalike", ".2f"),
+    "jams": ("jams", ".1f"),
+    "jammed": ("robots\nin jams", ".1f"),
+    "largest": ("largest\ncluster", ".1f"),
+}
+"""Header and format of the columns of the table of networks."""
+
+_NETWORK_CAPTION: Final = (
+    "of the measured game; degree: other robots that a robot met; strength: time that a robot spent in "
+    "conflicts; assortativity by swarm-ID: 1 if robots met only their own swarm, −1 if only others; jams, "
+    "robots in jams and the largest cluster: means over the seconds of the game"
+)
 
 
 @dataclass(frozen=True)
 class Recorded:
-    """A curve with recorded games, as rows of `runs.parquet`: `n`, `seed` and `run` of each."""
+    """A condition with recorded games: `n`, `seed` and `run` of each, as in `runs.parquet`."""
 
     scenario: str
     condition: str
@@ -38,171 +60,149 @@ class Recorded:
 
     @property
     def name(self) -> str:
-        """What the curve is called."""
+        """Name of the condition, with its scenario."""
         return f"{self.scenario}, {self.condition}" if self.condition else self.scenario
 
     @property
     def id(self) -> str:
-        """The curve as part of an anchor."""
+        """The name as part of an anchor."""
         return "".join(sign if sign.isalnum() else "-" for sign in self.name)
 
+    @property
     def densest(self) -> pd.DataFrame:
-        """Return the games at the highest density, the first seeds."""
+        """The first games at the highest density."""
         dense: pd.DataFrame = self.games[self.games["n"] == self.games["n"].max()]
-        return dense.head(GAMES)
+        return dense.head(MAX_GAMES)
+
+    @property
+    def densest_name(self) -> str:
+        """Name of the condition, with density and number of the games in `densest`."""
+        games = self.densest
+        seeds = games["seed"].nunique()
+        return f"{self.name}: N = {games['n'].iloc[0]}, {seeds} seed{'s' if seeds > 1 else ''}"
 
 
-def recorded_curves(directory: Path, runs: pd.DataFrame) -> tuple[list[Recorded], list[Recorded]]:
-    """Return the curves of which conflicts were recorded, and those of which robots were.
+def recorded_conditions(directory: Path, runs: pd.DataFrame) -> tuple[list[Recorded], list[Recorded]]:
+    """Return the conditions with recorded conflicts, and those with recorded robots.
 
-    A game that several curves share is looked at in the first of them.
+    A game that several conditions share belongs to the first of them.
     """
+    order = {scenario: index for index, scenario in enumerate(dict.fromkeys(runs["scenario"]))}
     found = []
     for name in (CONFLICTS_FILE, ROBOTS_FILE):
-        there = recorded_runs(directory, name)
-        games = runs[runs["run"].isin(there)].drop_duplicates("run").sort_values(["n", "seed"])
-        curves = games.groupby(["scenario", "condition"], sort=False)
-        by_curve = [Recorded(str(scenario), str(condition), rows) for (scenario, condition), rows in curves]
-        order = {scenario: index for index, scenario in enumerate(dict.fromkeys(runs["scenario"]))}
-        found.append(sorted(by_curve, key=lambda curve: (order[curve.scenario], curve.condition)))
+        recorded = runs[runs["run"].isin(recorded_runs(directory, name))]
+        games = recorded.drop_duplicates("run").sort_values(["n", "seed"])
+        conditions = [
+            Recorded(str(scenario), str(condition), rows)
+            for (scenario, condition), rows in games.groupby(["scenario", "condition"], sort=False)
+        ]
+        found.append(sorted(conditions, key=lambda each: (order[each.scenario], each.condition)))
     return found[0], found[1]
 
 
-def conflict_parts(directory: Path, curve: Recorded, places_of: PlacesOf) -> Iterator[tuple[str, Part]]:
-    """Show the recorded conflicts of a curve.
+def conflict_parts(directory: Path, condition: Recorded, places_of: PlacesOf) -> Iterator[tuple[str, Part]]:
+    """Show the recorded conflicts of a condition.
 
     Yields
     ------
     (str, Part)
-        Chapter, ``networks``, ``emergence`` or ``maps``, and a part of it.
+        Chapter (``networks``, ``emergence`` or ``maps``) and part.
     """
-    first = curve.densest().iloc[0]
-    dense = read_conflicts(directory, curve.densest()["run"])
-    one = dense[dense["run"] == first["run"]]
-    measured = dense[dense["phase"] == "game"]
-    game = measured[measured["run"] == first["run"]]
-    of_game = f"{curve.name}: N = {first['n']}, seed {first['seed']}"
-    if not game.empty:
-        yield "networks", _network_part(directory, curve, game, of_game)
-        yield "maps", _maps_part(curve, measured, places_of)
-    if one["q"].notna().any():
-        yield "emergence", _emergence_part(curve, one, of_game)
+    first = condition.densest.iloc[0]
+    conflicts = read_conflicts(directory, condition.densest["run"])
+    measured = conflicts[conflicts["phase"] == "game"]
+    first_game = measured[measured["run"] == first["run"]]
+    name = f"{condition.name}: N = {first['n']}, seed {first['seed']}"
+    if not first_game.empty:
+        yield "networks", _network_part(directory, condition, first_game, name)
+        yield "maps", _map_part(condition, measured, places_of)
+    with_learning = conflicts[conflicts["run"] == first["run"]]
+    if with_learning["q"].notna().any():
+        yield "emergence", _emergence_part(condition, with_learning, name)
 
 
-def _network_part(directory: Path, curve: Recorded, game: pd.DataFrame, of_game: str) -> Part:
-    part = Part(f"network-{curve.id}", curve.name)
-    part.show(
+def _network_part(directory: Path, condition: Recorded, game: pd.DataFrame, name: str) -> Part:
+    part = Part(f"network-{condition.id}", condition.name)
+    part.add_figure(
         part.id,
-        networks.network_figure(networks.meeting_network(game), f"{of_game}: who met whom"),
-        f"Network and matrix of the time that each two robots spent in conflict, {of_game}.",
-        f"Who met whom in the measured game, {of_game}: left, the wider and darker a line the longer two "
-        "met; right, the same times as a matrix, grey where two never met.",
+        networks.network_figure(networks.meeting_network(game), f"{name}: meetings"),
+        f"Network and matrix of the time that each two robots spent in conflict, {name}.",
+        f"Meetings in the measured game, {name}. Left: the wider and darker a line, the longer the conflicts "
+        "of the two robots. Right: the same times as a matrix; grey pairs never met.",
     )
-    part.show(
-        f"jams-{curve.id}",
-        networks.jams_figure(networks.jams(game), f"{of_game}: jams"),
-        f"Robots in jams and in the largest cluster over the time of the measured game, {of_game}.",
-        f"Jams, {of_game}: robots linked by conflicts that go on at the same moment, looked at every second.",
+    part.add_figure(
+        f"jams-{condition.id}",
+        networks.jams_figure(networks.jams(game), f"{name}: jams"),
+        f"Robots in jams and in the largest cluster over the time of the measured game, {name}.",
+        f"Jams, {name}: robots linked by simultaneous conflicts, at every second.",
     )
     rows = []
-    for n, games in curve.games.groupby("n"):
-        seeds = games.head(GAMES).set_index("run")["seed"]
+    for n, games in condition.games.groupby("n"):
+        seeds = games.head(MAX_GAMES).set_index("run")["seed"]
         conflicts = read_conflicts(directory, list(seeds.index))
         for run, of_run in conflicts[conflicts["phase"] == "game"].groupby("run"):
-            rows.append({"n": n, "seed": seeds[run], **_of_network(of_run)})
+            network = networks.describe(networks.meeting_network(of_run))
+            jams = networks.jams(of_run)[["jams", "jammed", "largest"]].mean()
+            rows.append({"n": n, "seed": seeds[run], **network, **jams})
     frame = pd.DataFrame(rows).sort_values(["n", "seed"])
-    part.tables.append(Tabled(part.id, f"Networks of {curve.name}", _printed(frame), frame))
-    return part
-
-
-def _of_network(game: pd.DataFrame) -> Mapping[str, float]:
-    means = networks.jams(game)[["jams", "jammed", "largest"]].mean()
-    return networks.describe(networks.meeting_network(game)) | {
-        str(name): mean for name, mean in means.items()
-    }
-
-
-def _printed(frame: pd.DataFrame) -> PrintedTable:
-    columns = {
-        "n": ("N", "{:.0f}"),
-        "seed": ("seed", "{:.0f}"),
-        "meetings": ("conflicts", "{:.0f}"),
-        "met": ("pairs\nthat met", "{:.2f}"),
-        "degree": ("degree", "{:.1f}"),
-        "strength": ("strength\n(s)", "{:.0f}"),
-        "inter": ("time\ninter-swarm", "{:.2f}"),
-        "assortativity": ("assortativity\nof pairs", "{:.2f}"),
-        "assortativity_time": ("assortativity\nby time", "{:.2f}"),
-        "chance": ("if all met\nalike", "{:.2f}"),
-        "jams": ("jams", "{:.1f}"),
-        "jammed": ("robots\nin jams", "{:.1f}"),
-        "largest": ("largest\ncluster", "{:.1f}"),
-    }
-    rows = [
-        [form.format(row[name]) if pd.notna(row[name]) else NONE for name, (_, form) in columns.items()]
+    cells = [
+        [number(row[name], form) for name, (_, form) in _NETWORK_COLUMNS.items()]
         for row in frame.to_dict("records")
     ]
-    caption = (
-        "of the measured game; degree: others that a robot met; strength: time that a robot spent in them; "
-        "assortativity by swarm-ID: 1 if robots met their own swarm alone, −1 if others alone; jams, robots "
-        "in them and the largest cluster: mean over the seconds"
-    )
-    return PrintedTable([heading for heading, _ in columns.values()], rows, caption)
+    table = PrintedTable([header for header, _ in _NETWORK_COLUMNS.values()], cells, _NETWORK_CAPTION)
+    part.add_table(part.id, f"Networks of {condition.name}", table, frame)
+    return part
 
 
-def _maps_part(curve: Recorded, measured: pd.DataFrame, places_of: PlacesOf) -> Part:
-    part = Part(f"map-{curve.id}", curve.name)
-    dense = curve.densest()
-    seeds = dense["seed"].nunique()
-    of_games = f"{curve.name}: N = {dense['n'].iloc[0]}, {seeds} seed{'s' if seeds > 1 else ''}"
-    part.show(
+def _map_part(condition: Recorded, measured: pd.DataFrame, places_of: PlacesOf) -> Part:
+    part = Part(f"map-{condition.id}", condition.name)
+    name = condition.densest_name
+    part.add_figure(
         part.id,
-        maps.heat_maps(measured, of_games, _common(curve, places_of)),
-        f"Heat maps of the places where conflicts began in the measured game, all and by action, {of_games}.",
-        f"Where conflicts began in the measured game, all and by action, with their numbers; {of_games}.",
+        heat_maps.heat_maps(measured, name, _common_places(condition, places_of)),
+        f"Heat maps of the places where conflicts began in the measured game, all and by action, {name}.",
+        f"Places where conflicts began in the measured game, all and by action, with their numbers; {name}.",
     )
     return part
 
 
-def _common(curve: Recorded, places_of: PlacesOf) -> Places | None:
-    """Return the places of a curve's games, None where they differ or are not known."""
-    games = curve.densest()[["n", "seed"]].to_numpy().tolist()
-    first, *others = (places_of(curve.scenario, curve.condition, n, seed) for n, seed in games)
+def _common_places(condition: Recorded, places_of: PlacesOf) -> Places | None:
+    """Return the arena of the games in `densest`, None if they differ or are unknown."""
+    games = condition.densest[["n", "seed"]].to_numpy().tolist()
+    first, *others = (places_of(condition.scenario, condition.condition, n, seed) for n, seed in games)
     if first is None or not all(o is not None and np.array_equal(o.stations, first.stations) for o in others):
         return None
     return first
 
 
-def _emergence_part(curve: Recorded, one: pd.DataFrame, of_game: str) -> Part:
-    part = Part(f"emergence-{curve.id}", curve.name)
-    part.show(
-        f"choices-{curve.id}",
-        emergence.choices_figure(one, f"{of_game}: choices"),
-        f"Line chart of the share of an action among learners' choices over the time of learning, {of_game}.",
-        f"Choices while learning, of all conflicts of the swarm and of each robot, {of_game}.",
+def _emergence_part(condition: Recorded, conflicts: pd.DataFrame, name: str) -> Part:
+    part = Part(f"emergence-{condition.id}", condition.name)
+    part.add_figure(
+        f"choices-{condition.id}",
+        emergence.choices_figure(conflicts, f"{name}: choices"),
+        f"Line chart of the share of an action among learners' choices over the time of learning, {name}.",
+        f"Choices while learning, of all conflicts of the swarm and of each robot, {name}.",
     )
-    part.show(
-        f"values-{curve.id}",
-        emergence.values_figure(one, f"{of_game}: Q"),
-        f"Line chart of the value Q of each action over the time of learning, {of_game}.",
-        f"Q while learning (Eq. 4.15), mean of the swarm and of each robot, {of_game}.",
+    part.add_figure(
+        f"values-{condition.id}",
+        emergence.values_figure(conflicts, f"{name}: Q"),
+        f"Line chart of the value Q of each action over the time of learning, {name}.",
+        f"Q while learning (Eq. 4.15), mean of the swarm and of each robot, {name}.",
     )
     return part
 
 
-def robots_parts(directory: Path, curve: Recorded) -> Iterator[tuple[str, Part]]:
-    """Yield how unlike the robots of a curve became, for the chapter ``emergence``, if any learned."""
-    dense = curve.densest()
-    robots = read_robots(directory, dense["run"])
+def robots_parts(directory: Path, condition: Recorded) -> Iterator[tuple[str, Part]]:
+    """Yield the final Q of each robot of a condition and its chapter ``emergence``, if any robot learned."""
+    robots = read_robots(directory, condition.densest["run"])
     if not robots["arms"].map(len).any():
         return
-    seeds = dense["seed"].nunique()
-    of_games = f"{curve.name}: N = {dense['n'].iloc[0]}, {seeds} seed{'s' if seeds > 1 else ''}"
-    part = Part(f"robots-{curve.id}", f"{curve.name}: robot by robot")
-    part.show(
+    name = condition.densest_name
+    part = Part(f"robots-{condition.id}", f"{condition.name}: robot by robot")
+    part.add_figure(
         part.id,
-        emergence.preferences_figure(robots, of_games),
-        f"Scatter chart of the value Q of each action at the end, robot by robot, {of_games}.",
-        f"How unlike the robots of a swarm became: Q of every arm at the end of the game, {of_games}.",
+        emergence.preferences_figure(robots, name),
+        f"Scatter chart of the value Q of each action at the end, robot by robot, {name}.",
+        f"Differences between the robots of a swarm: Q of every arm at the end of the game, {name}.",
     )
     yield "emergence", part

@@ -34,8 +34,7 @@ def report(
 ) -> None:
     """Write figures, tables and verdicts of all results into one HTML file that needs no network."""
     from kswarms.analysis.findings import FINDINGS, load
-    from kswarms.analysis.report import Planned
-    from kswarms.analysis.report import report as report_on
+    from kswarms.analysis.report import Planned, build_report
 
     path = out or directory / "report.html"
     if out is not None and not path.parent.is_dir():
@@ -53,7 +52,7 @@ def report(
         )
         for name, scenario in CATALOGUE.items()
     }
-    whole = report_on(
+    built = build_report(
         directory,
         plan,
         TABLES,
@@ -62,8 +61,8 @@ def report(
         progress=_progress,
     )
     if files is not None:
-        typer.echo(f"files:  {files} ({whole.write_files(files)} files)")
-    whole.write_page(path)
+        typer.echo(f"files:  {files} ({built.write_files(files)} files)")
+    built.write_page(path)
     typer.echo(f"report: {path} ({path.stat().st_size / 1e6:.1f} MB)")
 
 

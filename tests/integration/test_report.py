@@ -80,7 +80,7 @@ def test_a_report_covers_what_the_directory_holds(
     html = out.read_text()
     page = Page(html)
     assert set(SHOWN) <= set(page.ids)
-    assert {"table-6.1", "argos", "findings", "what-is-missing", "provenance"} <= set(page.ids)
+    assert {"table-6.1", "argos", "findings", "missing-games", "provenance"} <= set(page.ids)
     assert "fig-6.2" not in page.ids
     assert "not played: fig-6.1a, fig-6.1b, fig-6.2," in html
     assert "N = 20, 26, 30, 36, 40, 46, 50; seeds (7 of 20)" in html
@@ -143,7 +143,7 @@ def test_scenarios_of_ones_own_have_a_chapter_of_their_own(tmp_path: Path) -> No
             "good --out nowhere/page.html",
             "out='nowhere/page.html': must be a file in a directory that exists",
         ),
-        ("good --out empty", "out='empty': must be a place that can be written"),
+        ("good --out empty", "out='empty': must be a writable file"),
         ("good --findings none.toml", "findings='none.toml': must be a readable TOML file"),
         (
             "good --findings taken.toml",

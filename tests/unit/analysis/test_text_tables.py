@@ -1,4 +1,4 @@
-"""Tables as text: Markdown and HTML say what the table says, and nothing in it is taken for markup."""
+"""Text tables in Markdown and HTML."""
 
 from kswarms.analysis.text_tables import PrintedTable
 
@@ -36,12 +36,12 @@ def test_html_has_headings_of_columns_and_rows_and_escapes_all_text() -> None:
     assert "<td>no</td>" in lines[5]
 
 
-def test_a_table_without_rows_or_caption_is_a_heading() -> None:
+def test_a_table_without_rows_or_caption() -> None:
     empty = PrintedTable(["a", "b"], [], "")
     assert empty.to_markdown() == "| a | b |\n|---|---|\n"
     assert "<caption>" not in empty.to_html()
 
 
-def test_words_and_dates_are_no_numbers() -> None:
+def test_words_and_dates_are_not_numbers() -> None:
     rows = [["-1.5", "+3 %", "6.1a-alike", "5 of 6"], ["−2", "–", "6.1b", "7 of 8"]]
-    assert PrintedTable(list("abcd"), rows, "").numeric() == [True, True, False, True]
+    assert PrintedTable(list("abcd"), rows, "").classes() == ["number", "number", "", "number"]

@@ -272,7 +272,7 @@ def test_interrupted_writing_leaves_the_old_picture_and_nothing_else(
         raise OSError("No space left on device")
 
     monkeypatch.setattr(Path, "write_bytes", full_disk)
-    with pytest.raises(InputError, match="must be a place that can be written"):
+    with pytest.raises(InputError, match="must be a writable file"):
         draw(tmp_path, ["fig-x"], {"fig-x": "another title"})
     assert path.read_bytes() == first
     assert list(path.parent.iterdir()) == [path]
@@ -281,7 +281,7 @@ def test_interrupted_writing_leaves_the_old_picture_and_nothing_else(
 def test_figures_that_cannot_be_written(tmp_path: Path) -> None:
     runs_of("fig-x").to_parquet(tmp_path / "runs.parquet")
     (tmp_path / "figures").write_text("in the way")
-    with pytest.raises(InputError, match="must be a place that can be written"):
+    with pytest.raises(InputError, match="must be a writable file"):
         draw(tmp_path, ["fig-x"], {})
 
 

@@ -10,7 +10,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.colours import SWARM_COLOURS
 from kswarms.analysis.figures import emergence, networks
 from kswarms.analysis.figures import heat_maps as maps
-from kswarms.analysis.figures.files import drawn, encoded, save
+from kswarms.analysis.figures.files import encode, encode_all, save
 from kswarms.analysis.figures.over_time import pucks_over_time, sud_over_time, time_share_over_time
 from kswarms.model.foraging import ForagingModel
 
@@ -60,7 +60,7 @@ def test_the_conflicts_of_a_datacollector_are_drawn_like_those_of_a_file(model: 
         emergence.values_figure(conflicts),
         maps.heat_maps(conflicts, places=model.arena),
     )
-    assert all(encoded(figure, "png").startswith(b"\x89PNG") for figure in figures)
+    assert all(encode(figure, "png").startswith(b"\x89PNG") for figure in figures)
 
 
 def figure() -> Figure:
@@ -70,15 +70,15 @@ def figure() -> Figure:
 
 
 def test_a_picture_is_the_same_bytes_in_either_format() -> None:
-    assert encoded(figure(), "svg") == encoded(figure(), "svg")
-    assert encoded(figure(), "png") == encoded(figure(), "png")
-    assert b"<svg" in encoded(figure(), "svg")
+    assert encode(figure(), "svg") == encode(figure(), "svg")
+    assert encode(figure(), "png") == encode(figure(), "png")
+    assert b"<svg" in encode(figure(), "svg")
     with pytest.raises(InputError, match="format='gif': must be one of png, svg"):
-        encoded(figure(), "gif")
+        encode(figure(), "gif")
 
 
 def test_the_smallest_format_is_known() -> None:
-    picture = drawn(figure())
+    picture = encode_all(figure())
     assert (picture.width, picture.height) == (192, 96)
     other = {"png": "svg", "svg": "png"}[picture.smallest]
     assert len(picture.files[picture.smallest]) <= len(picture.files[other])
@@ -86,6 +86,6 @@ def test_the_smallest_format_is_known() -> None:
 
 def test_a_figure_is_saved_by_the_suffix_of_its_file(tmp_path: Path) -> None:
     save(figure(), tmp_path / "figures" / "a.SVG")
-    assert (tmp_path / "figures" / "a.SVG").read_bytes() == encoded(figure(), "svg")
+    assert (tmp_path / "figures" / "a.SVG").read_bytes() == encode(figure(), "svg")
     with pytest.raises(InputError, match="format='jpg'"):
         save(figure(), tmp_path / "a.jpg")

@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.findings import Verdict
-from kswarms.analysis.report.coverage import Planned, coverage, printed
-from kswarms.analysis.report.page import Chapter, Part, Report, Tabled
+from kswarms.analysis.report.coverage import Planned, coverage, coverage_table
+from kswarms.analysis.report.page import Chapter, Part, Report
 from kswarms.analysis.report.provenance import provenance_parts
-from kswarms.analysis.report.record_parts import conflict_parts, recorded_curves
+from kswarms.analysis.report.record_parts import conflict_parts, recorded_conditions
 from kswarms.analysis.report.scenario_parts import argos_parts, verdicts_part
 from kswarms.analysis.text_tables import PrintedTable
 from kswarms.model.description.arena import Arena, build_arena
@@ -48,10 +48,10 @@ def test_coverage_of_gaps_that_no_list_tells() -> None:
 
 
 def test_what_is_missing_is_printed_by_scenario_and_the_rest_in_a_line() -> None:
-    table = printed(coverage(pd.concat([runs_of("fig-x"), runs_of("fig-y", conditions=("a",))]), PLAN))
+    table = coverage_table(coverage(pd.concat([runs_of("fig-x"), runs_of("fig-y", conditions=("a",))]), PLAN))
     assert table.rows == [["fig-y", "12", "24", "conditions b"]]
     assert table.caption == "1 of 3 scenarios are complete, 1 in part; not played: fig-z."
-    whole = printed(coverage(runs_of("fig-x"), {"fig-x": PLAN["fig-x"]}))
+    whole = coverage_table(coverage(runs_of("fig-x"), {"fig-x": PLAN["fig-x"]}))
     assert whole.rows == []
     assert whole.caption == "1 of 1 scenarios are complete, 0 in part."
 
@@ -60,9 +60,9 @@ def a_report() -> Report:
     part = Part("one", "One & only", ["text <b>"], source="a = 1\nb = 2")
     drawing = Figure(figsize=(9, 2))
     drawing.subplots()
-    part.show("curve", drawing, 'alt "quoted"', "caption")
+    part.add_figure("curve", drawing, 'alt "quoted"', "caption")
     table = PrintedTable(["N", "x"], [["6", "1.0"]], "below")
-    part.tables.append(Tabled("numbers", "Numbers", table, pd.DataFrame({"N": [6], "x": [1.25]})))
+    part.add_table("numbers", "Numbers", table, pd.DataFrame({"N": [6], "x": [1.25]}))
     return Report(
         "A title",
         ["summary"],
@@ -95,7 +95,7 @@ def test_a_page_and_its_files_are_written_or_refused(tmp_path: Path) -> None:
     assert report.write_files(tmp_path / "a" / "b") == 5
     names = {path.name for path in (tmp_path / "a" / "b").iterdir()}
     assert names == {"curve.png", "curve.svg", "numbers.csv", "numbers.md", "numbers.html"}
-    with pytest.raises(InputError, match=r"out=.*must be a place that can be written"):
+    with pytest.raises(InputError, match=r"out=.*must be a writable file"):
         report.write_page(tmp_path)
     with pytest.raises(InputError, match=r"files=.*must be a folder"):
         report.write_files(tmp_path / "page.html")
@@ -110,10 +110,10 @@ def test_verdicts_are_counted_and_marked() -> None:
             Verdict("d", "D was not played.", "no data", note="no runs"),
         ]
     )
-    assert part.text[0] == "4 findings at the seeds given: 1 holds, 1 fails, 1 undecided, 1 no data."
+    assert part.text[0] == "4 findings: 1 holds, 1 fails, 1 undecided, 1 no data."
     (table,) = part.tables
-    assert [row[3] for row in table.printed.rows] == ["1.23 (0.5 … 2)", "-1 (… … -0.25)", "1", "–"]
-    html = table.html
+    assert [row[3] for row in table.table.rows] == ["1.23 (0.5 … 2)", "-1 (… … -0.25)", "1", "–"]
+    html = table.table.to_html()
     assert '<td class="holds">holds</td>' in html
     assert '<td class="fails">fails</td>' in html
     assert list(table.frame["finding"]) == ["a", "b", "c", "d"]
@@ -125,7 +125,7 @@ def test_argos_is_compared_where_it_was_played() -> None:
     ((chapter, part),) = argos_parts(runs_of("argos-avoid-avoid", densities=[16]))
     assert chapter == "argos-"
     assert part.text[1].startswith("Scores agree in ")
-    assert len(part.tables[0].printed.rows) == 2
+    assert len(part.tables[0].table.rows) == 2
 
 
 def test_a_shared_game_is_looked_at_once(tmp_path: Path) -> None:
@@ -133,10 +133,10 @@ def test_a_shared_game_is_looked_at_once(tmp_path: Path) -> None:
     runs = pd.concat([first, first[first["condition"] == "x"].assign(scenario="fig-a")])
     wanted = runs[runs["n"] == 16]["run"].unique()
     pd.DataFrame({"run": wanted}).to_parquet(tmp_path / "conflicts.parquet")
-    conflicts, robots = recorded_curves(tmp_path, runs)
+    conflicts, robots = recorded_conditions(tmp_path, runs)
     assert [(curve.scenario, curve.condition) for curve in conflicts] == [("fig-b", "x"), ("fig-b", "y")]
     assert [curve.id for curve in conflicts] == ["fig-b--x", "fig-b--y"]
-    assert conflicts[0].densest()["seed"].tolist() == [0, 1, 2, 3]
+    assert conflicts[0].densest["seed"].tolist() == [0, 1, 2, 3]
     assert robots == []
 
 
@@ -144,7 +144,7 @@ def test_stations_that_differ_from_seed_to_seed_are_not_drawn_into_one_map(tmp_p
     runs = runs_of("fig-x", densities=[16], seeds=2)
     games = [MET.assign(run=run) for run in runs["run"].unique()]
     pd.concat(games).to_parquet(tmp_path / "conflicts.parquet")
-    (curve,), _ = recorded_curves(tmp_path, runs)
+    (curve,), _ = recorded_conditions(tmp_path, runs)
 
     def drawn(layout: str, monkeypatch: pytest.MonkeyPatch) -> list[bool]:
         shown: list[bool] = []
@@ -168,7 +168,7 @@ def test_stations_that_differ_from_seed_to_seed_are_not_drawn_into_one_map(tmp_p
 def test_provenance_without_a_manifest_says_so(tmp_path: Path) -> None:
     runs_of("fig-x").to_parquet(tmp_path / "runs.parquet")
     files, made_with, manifest = provenance_parts(tmp_path)
-    assert files.tables[0].printed.rows[0][:2] == ["runs.parquet", "24"]
+    assert files.tables[0].table.rows[0][:2] == ["runs.parquet", "24"]
     assert "matplotlib 3." in made_with.text[0]
     assert "no manifest.json" in manifest.text[0]
 

@@ -12,7 +12,7 @@ from matplotlib.collections import LineCollection
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.figures import emergence, networks
 from kswarms.analysis.figures import heat_maps as maps
-from kswarms.analysis.figures.files import encoded
+from kswarms.analysis.figures.files import encode
 from kswarms.analysis.results import records
 from kswarms.model.description.arena import build_arena
 from tests.helpers.result_rows import MET, conflict, robots
@@ -129,11 +129,11 @@ def test_the_network_is_drawn_with_a_line_for_each_pair_and_its_time_in_the_matr
     assert "(s)" in colours.get_ylabel()
     legend = [text.get_text() for text in figure.legends[0].get_texts()]
     assert legend == ["intra-swarm meetings", "inter-swarm meetings", "S1", "S2"]
-    assert encoded(figure, "png")
+    assert encode(figure, "png")
 
 
 def test_a_network_of_one_pair_can_be_drawn() -> None:
-    assert encoded(networks.network_figure(networks.meeting_network(MET.head(1))), "svg")
+    assert encode(networks.network_figure(networks.meeting_network(MET.head(1))), "svg")
 
 
 def test_jams_are_drawn_over_time() -> None:
@@ -257,7 +257,7 @@ def test_heat_maps_of_all_and_of_each_action_share_a_scale() -> None:
     assert panels[1].images[0].get_array().sum() == 0.5
     assert [text.get_text() for text in panels[0].texts] == ["station", "station", "S1", "S2"]
     assert colours.get_ylabel() == "conflicts begun in 5 × 5 cm, a game"
-    assert encoded(figure, "png")
+    assert encode(figure, "png")
 
 
 def test_heat_map_of_one_action_without_places() -> None:

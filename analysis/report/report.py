@@ -1,0 +1,155 @@
+"""Assembly of the report from its parts."""
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Final
+
+import pandas as pd
+
+from kswarms.analysis.findings import FINDINGS, Finding, judge_all
+from kswarms.analysis.report.coverage import Planned, coverage, coverage_table
+from kswarms.analysis.report.page import Chapter, Part, Report
+from kswarms.analysis.report.provenance import provenance_parts
+from kswarms.analysis.report.record_parts import PlacesOf, conflict_parts, recorded_conditions, robots_parts
+from kswarms.analysis.report.scenario_parts import (
+    ARGOS,
+    argos_parts,
+    scenario_part,
+    table_part,
+    verdicts_part,
+)
+from kswarms.analysis.results.runs import Results, read_results
+from kswarms.analysis.text_tables import span
+
+_TITLES: Final = {
+    "verdicts": "Findings",
+    "fig-6.": "Symmetric swarms (chapter 6)",
+    "fig-7.": "Disadvantaged learner (chapter 7)",
+    ARGOS: "Comparison with ARGoS",
+    "other": "Other scenarios",
+    "networks": "Interaction networks and jams",
+    "emergence": "Emerging policies",
+    "maps": "Places of conflicts",
+    "missing": "Missing games",
+    "provenance": "Provenance",
+}
+"""Titles of the chapters, in their order."""
+
+_PREFIXES: Final = ("fig-6.", "fig-7.", ARGOS)
+"""Chapters of scenarios, by the prefix of the scenario's id; all others belong to the chapter `other`."""
+
+Tables = Mapping[str, tuple[str, Sequence[str]]]
+"""Title and scenarios of each table of the source."""
+
+Step = Callable[[], Iterable[tuple[str, Part]]]
+"""Makes parts and names the chapter of each."""
+
+Progress = Callable[[Sequence[Step]], Iterable[Step]]
+"""Yields steps one by one, as a progress bar does."""
+
+
+def build_report(
+    directory: Path,
+    plan: Mapping[str, Planned],
+    source_tables: Tables,
+    findings: Sequence[Finding] = FINDINGS,
+    places_of: PlacesOf = lambda *_: None,
+    progress: Progress = iter,
+) -> Report:
+    """Build the report on a results directory.
+
+    Parameters
+    ----------
+    directory : Path
+        Results directory of `kswarms run --out`.
+    plan : mapping of str to Planned
+        Scenarios by id, in their order in the report; other scenarios of the results follow.
+    source_tables : mapping of str to (str, sequence of str)
+        Title and scenarios of each table of the source.
+    findings : sequence of Finding
+        Findings to judge.
+    places_of : callable
+        Arenas, drawn into the heat maps.
+    progress : callable
+        Wrapper of the steps, such as a progress bar.
+
+    Returns
+    -------
+    Report
+        The same results always give the same report.
+
+    Raises
+    ------
+    InputError
+        The results cannot be read.
+    """
+    results = read_results(directory)
+    covered = coverage(results.runs, plan)
+    provenance = provenance_parts(directory)
+    with_conflicts, with_robots = recorded_conditions(directory, results.runs)
+    steps: list[Step] = [
+        lambda: [("verdicts", verdicts_part(judge_all(results, findings)))],
+        *_scenario_steps(results, plan, source_tables, covered),
+        *_table_steps(results, source_tables),
+        partial(argos_parts, results.runs),
+        *(partial(conflict_parts, directory, condition, places_of) for condition in with_conflicts),
+        *(partial(robots_parts, directory, condition) for condition in with_robots),
+    ]
+    parts: dict[str, list[Part]] = defaultdict(list)
+    for step in progress(steps):
+        for chapter, part in step():
+            parts[chapter].append(part)
+    missing = Part("missing", _TITLES["missing"])
+    missing.add_table("coverage", "Games of each scenario", coverage_table(covered), covered)
+    parts |= {"missing": [missing], "provenance": provenance}
+    chapters = [Chapter(_anchor(title), title, parts[key]) for key, title in _TITLES.items() if parts[key]]
+    return Report(f"Report on {directory.resolve().name}", _summary(results, covered), chapters)
+
+
+def _scenario_steps(
+    results: Results, plan: Mapping[str, Planned], tables: Tables, covered: pd.DataFrame
+) -> Iterator[Step]:
+    """Yield a step for each scenario with runs, in the order of the plan."""
+    missing = dict(zip(covered["scenario"], covered["missing"], strict=True))
+    table_of = {scenario: table for table, (_, scenarios) in tables.items() for scenario in scenarios}
+    present = set(results.runs["scenario"])
+    for scenario in dict.fromkeys([*plan, *results.runs["scenario"]]):
+        if scenario in present:
+            title = plan[scenario].title if scenario in plan else ""
+            words = (scenario, title, missing.get(scenario, ""), table_of.get(scenario, ""))
+            yield partial(_in_chapter, scenario, scenario_part, results, *words)
+
+
+def _table_steps(results: Results, tables: Tables) -> Iterator[Step]:
+    """Yield a step for each table of the source with results of at least one of its scenarios."""
+    if results.policies is not None:
+        learned = set(results.policies["scenario"])
+        for table, (title, scenarios) in tables.items():
+            if learned.intersection(scenarios):
+                name = table.replace("table-", "fig-")
+                yield partial(_in_chapter, name, table_part, results.policies, table, title, scenarios)
+
+
+def _in_chapter(name: str, make: Callable[..., Part], *arguments: object) -> list[tuple[str, Part]]:
+    """Make the part of a scenario or table, and return it with its chapter."""
+    chapter = next((prefix for prefix in _PREFIXES if name.startswith(prefix)), "other")
+    return [(chapter, make(*arguments))]
+
+
+def _summary(results: Results, covered: pd.DataFrame) -> list[str]:
+    runs = results.runs
+    seeds = runs.groupby(["scenario", "condition", "n"])["seed"].nunique()
+    complete = int((covered["missing"] == "").sum())
+    incomplete = int((covered["games"] > 0).sum()) - complete
+    return [
+        f"{runs['run'].nunique():,} games with {span(seeds.min(), seeds.max())} seeds at each density. "
+        f"Of {len(covered)} scenarios, {complete} are complete and {incomplete} in part.",
+        "Each figure is shown in the form of the source, then with the 95 % interval of each mean and with "
+        "single seeds. Its numbers are below it, beside published ones if these are available.",
+    ]
+
+
+def _anchor(title: str) -> str:
+    return "-".join("".join(sign if sign.isalnum() else " " for sign in title.lower()).split())
