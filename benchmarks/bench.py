@@ -21,7 +21,8 @@ from simpy.events import Event, Timeout
 
 from kswarms.model.foraging import ForagingModel
 from kswarms.model.game_model import GameModel
-from kswarms.scenarios.description.scenario import Condition, Scenario, SwarmRule
+from kswarms.scenarios.description.condition import Condition, SwarmRule
+from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.study.study import Study
 
 MOST_TIMES_BARE: Final = 5.0

@@ -15,7 +15,8 @@ import numpy as np
 import pandas as pd
 
 from kswarms.scenarios.catalogue import CATALOGUE
-from kswarms.scenarios.description.scenario import Condition, Scenario
+from kswarms.scenarios.description.condition import Condition
+from kswarms.scenarios.description.scenario import Scenario
 
 MOST_SECONDS: Final = 120.0
 MOST_MEMORY: Final = 1500

@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from kswarms.model.foraging import ForagingModel
     from kswarms.model.game_model import GameModel
     from kswarms.scenarios.catalogue import CATALOGUE
-    from kswarms.scenarios.description.scenario import Condition, Scenario, SwarmRule
+    from kswarms.scenarios.description.condition import Condition, SwarmRule
+    from kswarms.scenarios.description.scenario import Scenario
     from kswarms.scenarios.description.toml_files import read_scenarios
     from kswarms.scenarios.study.study import Study
 
@@ -55,7 +56,8 @@ _MODULES: Final = {
     "model.foraging": ("ForagingModel",),
     "model.game_model": ("GameModel",),
     "scenarios.catalogue": ("CATALOGUE",),
-    "scenarios.description.scenario": ("Condition", "Scenario", "SwarmRule"),
+    "scenarios.description.condition": ("Condition", "SwarmRule"),
+    "scenarios.description.scenario": ("Scenario",),
     "scenarios.description.toml_files": ("read_scenarios",),
     "scenarios.study.study": ("Study",),
 }

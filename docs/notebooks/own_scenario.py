@@ -18,7 +18,8 @@ import pandas as pd
 import seaborn as sns
 
 from kswarms.model.foraging import ForagingModel
-from kswarms.scenarios.description.scenario import Condition, Scenario, SwarmRule
+from kswarms.scenarios.description.condition import Condition, SwarmRule
+from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.runs.run import expand
 from kswarms.scenarios.runs.sweep import play_all
 

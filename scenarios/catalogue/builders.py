@@ -6,7 +6,8 @@ from typing import Any, Final
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.learning.rewards import REWARDS
 from kswarms.agents.learning.selection_rules import RULES
-from kswarms.scenarios.description.scenario import LEARNING, Condition, SwarmRule
+from kswarms.scenarios.description.condition import Condition, SwarmRule
+from kswarms.scenarios.description.scenario import LEARNING
 
 _LEARNS_BY: Final = {"reward": "wlu", "rule": "ucb"}
 

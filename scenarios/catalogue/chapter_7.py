@@ -3,7 +3,8 @@
 from typing import Any, Final
 
 from kswarms.scenarios.catalogue.builders import curve, curves, fast, learner, reward_of, swarm
-from kswarms.scenarios.description.scenario import Scenario, SwarmRule
+from kswarms.scenarios.description.condition import SwarmRule
+from kswarms.scenarios.description.scenario import Scenario
 
 ADVANTAGE: Final = 7 / 6
 """b of Eq. 7.2: the opponent's program time is worth this much of the learner's."""

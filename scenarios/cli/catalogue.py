@@ -10,7 +10,8 @@ from kswarms.scenarios.catalogue.selecting import chosen
 from kswarms.scenarios.cli.options import ids
 from kswarms.scenarios.cli.printing import print_columns
 from kswarms.scenarios.cli.progress import clock
-from kswarms.scenarios.description.scenario import Condition, Scenario, toml_of
+from kswarms.scenarios.description.condition import Condition
+from kswarms.scenarios.description.scenario import Scenario, toml_of
 from kswarms.scenarios.runs.cost import cpu_seconds
 
 

@@ -4,7 +4,6 @@ A scenario belongs to one figure or table of the source; each of its conditions 
 and validated on construction, so every scenario object can be played.
 """
 
-import math
 from collections.abc import Iterable
 from typing import Any, Final, Self
 
@@ -13,10 +12,9 @@ from pydantic import Field, model_validator
 
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.robot.body import BODIES
-from kswarms.model.description.fields import GameFields, SwarmFields
-from kswarms.model.description.game import Game, Swarm, apportion
-from kswarms.model.description.parameters import text_of
+from kswarms.model.description.game import Game
+from kswarms.scenarios.description.condition import LONGEST_NAME, ONE_LINE, Condition, Value
+from kswarms.scenarios.description.grid import collapse_grid, expand_grid
 
 DENSITIES: Final = (6, 10, 16, 20, 26, 30, 36, 40, 46, 50)
 """Default numbers of robots (section 3.1)."""
@@ -26,71 +24,8 @@ LEARNING: Final = 3000.0
 """Duration of the learning phase of learners in the source (s, section 3.1)."""
 MOST_SEEDS: Final = 1_000_000
 """Maximum number of games per density."""
-LONGEST_NAME: Final = 100
 LONGEST_TITLE: Final = 200
-"""Maximum number of characters of a name, which file names contain, and of a title."""
-_ONE_LINE: Final = r"^[^\x00-\x1f\x7f]*$"
-
-
-class SwarmRule(SwarmFields):
-    """One swarm of a condition.
-
-    Attributes
-    ----------
-    share : int
-        Share of all robots, in proportion to the shares of the other swarms.
-    """
-
-    share: int = Field(default=1, ge=1)
-
-
-class Condition(GameFields):
-    """One curve of a scenario: everything that a game has except its seed and its number of robots.
-
-    Attributes
-    ----------
-    name : str
-        Name of the curve; may be empty if it is the only one.
-    swarms : tuple of SwarmRule
-        S1 to SK.
-    multiple_of : int, optional
-        The number of robots must be a multiple of it. The default is the sum of the shares in lowest terms,
-        so that the proportions hold exactly.
-    """
-
-    name: str = Field(default="", max_length=LONGEST_NAME, pattern=_ONE_LINE)
-    swarms: tuple[SwarmRule, ...] = Field(min_length=1)
-    multiple_of: int | None = Field(default=None, ge=1)
-
-    def sizes(self, n: int) -> list[int]:
-        """Return the size of each swarm if there are `n` robots.
-
-        Raises
-        ------
-        InputError
-            If `n` does not suit the proportions or leaves a swarm empty.
-        """
-        shares = [swarm.share for swarm in self.swarms]
-        step = self.multiple_of or sum(shares) // math.gcd(*shares)
-        sizes = apportion(n, shares) if n > 0 else [0]
-        if n % step or min(sizes) < 1:
-            proportions = ":".join(map(str, shares))
-            raise InputError("n", n, f"must be a multiple of {step} that gives each of {proportions} a robot")
-        return sizes
-
-    def game(self, n: int) -> Game:
-        """Return the game of `n` robots.
-
-        Raises
-        ------
-        InputError
-            If the game is not allowed.
-        """
-        swarms = tuple(
-            Swarm(policy=rule.policy, size=size, drive=rule.drive, drive_action=rule.drive_action)
-            for rule, size in zip(self.swarms, self.sizes(n), strict=True)
-        )
-        return Game(swarms=swarms, **self.game_fields())
+"""Maximum number of characters of a title."""
 
 
 class Scenario(Checked):
@@ -103,18 +38,30 @@ class Scenario(Checked):
     title : str
         One line.
     conditions : tuple of Condition
-        The curves; their names differ.
+        The curves; their names differ. With a grid, one for each of its points: the values join the name.
     densities : tuple of int
         Numbers of robots.
     seeds : int
         Number of games per density.
+    grid : dict of str to tuple
+        Values of fields (see `kswarms.scenarios.description.grid.expand_grid`): each condition becomes a
+        condition for each combination of values, with the combination as its `Condition.grid_values`.
     """
 
     id: str = Field(pattern=r"^[a-z0-9][a-z0-9.-]*$", max_length=LONGEST_NAME)
-    title: str = Field(min_length=1, max_length=LONGEST_TITLE, pattern=_ONE_LINE)
+    title: str = Field(min_length=1, max_length=LONGEST_TITLE, pattern=ONE_LINE)
     conditions: tuple[Condition, ...] = Field(min_length=1)
     densities: tuple[int, ...] = Field(default=DENSITIES, min_length=1)
     seeds: int = Field(default=SEEDS, ge=1, le=MOST_SEEDS)
+    grid: dict[str, tuple[Value, ...]] = {}
+
+    def __hash__(self) -> int:
+        return hash((self.id, self.conditions, self.densities, self.seeds))
+
+    @model_validator(mode="after")
+    def _expand(self) -> Self:
+        object.__setattr__(self, "conditions", expand_grid(self.conditions, self.grid))
+        return self
 
     @model_validator(mode="after")
     def _playable(self) -> Self:
@@ -155,24 +102,10 @@ class Scenario(Checked):
 
     def _plain(self) -> dict[str, Any]:
         plain = self.model_dump(mode="json", exclude_defaults=True)
-        plain["conditions"] = [_plain_condition(condition) for condition in self.conditions]
-        return plain
+        plain["conditions"] = [each.plain() for each in collapse_grid(self.conditions, self.grid)]
+        return dict(sorted(plain.items(), key=lambda item: item[0] in ("grid", "conditions")))
 
 
 def toml_of(scenarios: Iterable[Scenario]) -> str:
     """Return several scenarios as one TOML document: its array ``scenarios``."""
     return tomlkit.dumps({"scenarios": [scenario._plain() for scenario in scenarios]})
-
-
-def _plain_condition(condition: Condition) -> dict[str, Any]:
-    """Return the values that differ from the defaults, with names of presets, in the order of TOML."""
-    plain = condition.model_dump(mode="json", exclude_defaults=True)
-    if "parameters" in plain:
-        plain["parameters"] = text_of(condition.parameters)
-    if BODIES.get(condition.body.name) == condition.body and "body" in plain:
-        plain["body"] = condition.body.name
-    return dict(sorted(plain.items(), key=lambda item: (_is_table(item[1]), item[0] != "name")))
-
-
-def _is_table(value: object) -> bool:
-    return isinstance(value, dict) or (isinstance(value, list) and isinstance(value[0], dict))

@@ -10,11 +10,11 @@ from kswarms.agents.policies.registry import parts
 from kswarms.agents.user_code.syntax import parse_call
 from kswarms.model.description.game import Game
 from kswarms.model.description.parameters import parse_parameters, text_of
-from kswarms.scenarios.description.scenario import Condition, SwarmRule
+from kswarms.scenarios.description.condition import Condition, SwarmRule
 
 
 class SwarmForm(NamedTuple):
-    """The controls of one swarm, as the fields of `kswarms.scenarios.description.scenario.SwarmRule`."""
+    """The controls of one swarm, as the fields of `kswarms.scenarios.description.condition.SwarmRule`."""
 
     policy: str = "avoid"
     share: int = 1
@@ -32,7 +32,7 @@ class Form(NamedTuple):
     n, seed : int
         Robots in all; seed.
     layout, body, parameters, actions, learning, duration, multiple_of
-        As in `kswarms.scenarios.description.scenario.Condition`.
+        As in `kswarms.scenarios.description.condition.Condition`.
     puck_limit, supply : int
         Likewise; 0 for no limit.
     absent, absent_from

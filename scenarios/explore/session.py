@@ -12,7 +12,7 @@ from typing import Any, Final
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.learner import Learner
 from kswarms.scenarios.catalogue.selecting import USUAL_N, chosen, integers
-from kswarms.scenarios.description.scenario import Condition
+from kswarms.scenarios.description.condition import Condition
 from kswarms.scenarios.explore.form import Form, SwarmForm, with_learning, with_parameter
 from kswarms.scenarios.runs.play import run_errors
 from kswarms.scenarios.runs.run import Run

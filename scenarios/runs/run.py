@@ -13,7 +13,8 @@ from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.registry import parts
 from kswarms.agents.policies.user_policy import files
 from kswarms.model.description.game import Game
-from kswarms.scenarios.description.scenario import Condition, Scenario
+from kswarms.scenarios.description.condition import Condition
+from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.runs.cost import cpu_seconds
 
 LAST_SEED: Final = 2**53

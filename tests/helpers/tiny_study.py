@@ -7,7 +7,8 @@ from typing import Any
 
 from kswarms.model.game_model import GameModel
 from kswarms.scenarios.cli import invoke
-from kswarms.scenarios.description.scenario import Condition, Scenario, SwarmRule
+from kswarms.scenarios.description.condition import Condition, SwarmRule
+from kswarms.scenarios.description.scenario import Scenario
 
 TINY = Scenario(
     id="tiny",

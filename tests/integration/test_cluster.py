@@ -14,7 +14,8 @@ from distributed import Client, LocalCluster
 
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.cli import invoke
-from kswarms.scenarios.description.scenario import Condition, Scenario, SwarmRule
+from kswarms.scenarios.description.condition import Condition, SwarmRule
+from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.runs.dask import dask_executor
 from kswarms.scenarios.runs.run import expand
 from kswarms.scenarios.runs.sweep import play_all, sweep

@@ -16,7 +16,8 @@ from kswarms.analysis.measures.utilities import robot_utilities, swarm_utilities
 from kswarms.analysis.results.records import read_conflicts
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.game_model import GameModel
-from kswarms.scenarios.description.scenario import Condition, Scenario, SwarmRule
+from kswarms.scenarios.description.condition import Condition, SwarmRule
+from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.runs.play import play
 from kswarms.scenarios.runs.run import expand
 from kswarms.scenarios.study.study import Study

@@ -14,7 +14,7 @@ import pytest
 from kswarms import __version__
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.cli import invoke
-from kswarms.scenarios.description.scenario import Condition, SwarmRule
+from kswarms.scenarios.description.condition import Condition, SwarmRule
 from kswarms.scenarios.study import study as study_module
 from kswarms.scenarios.study.database import FILE
 from kswarms.scenarios.study.ledger import find_run

@@ -12,7 +12,8 @@ from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.robot.body import KREMBOT
 from kswarms.scenarios.catalogue import CATALOGUE
-from kswarms.scenarios.description.scenario import Condition, Scenario, SwarmRule, toml_of
+from kswarms.scenarios.description.condition import Condition, SwarmRule
+from kswarms.scenarios.description.scenario import Scenario, toml_of
 
 AVOID = SwarmRule(policy="avoid")
 

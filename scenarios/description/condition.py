@@ -1,0 +1,101 @@
+"""One curve of a scenario: a game without its seed and its number of robots."""
+
+import math
+from typing import Any, Final
+
+from pydantic import Field
+
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.robot.body import BODIES
+from kswarms.model.description.fields import GameFields, SwarmFields
+from kswarms.model.description.game import Game, Swarm, apportion
+from kswarms.model.description.parameters import text_of
+
+LONGEST_NAME: Final = 100
+"""Maximum number of characters of a name; file names contain it."""
+ONE_LINE: Final = r"^[^\x00-\x1f\x7f]*$"
+"""Pattern of a text without line breaks and control characters."""
+Value = bool | int | float | str
+"""Value of a field in a grid."""
+
+
+class SwarmRule(SwarmFields):
+    """One swarm of a condition.
+
+    Attributes
+    ----------
+    share : int
+        Share of all robots, in proportion to the shares of the other swarms.
+    """
+
+    share: int = Field(default=1, ge=1)
+
+
+class Condition(GameFields):
+    """One curve of a scenario: everything that a game has except its seed and its number of robots.
+
+    Attributes
+    ----------
+    name : str
+        Name of the curve; may be empty if it is the only one.
+    swarms : tuple of SwarmRule
+        S1 to SK.
+    multiple_of : int, optional
+        The number of robots must be a multiple of it. The default is the sum of the shares in lowest terms,
+        so that the proportions hold exactly.
+    grid_point : tuple of (str, value)
+        Fields that the grid of the scenario sets, with their values; set by the scenario.
+    """
+
+    name: str = Field(default="", max_length=LONGEST_NAME, pattern=ONE_LINE)
+    swarms: tuple[SwarmRule, ...] = Field(min_length=1)
+    multiple_of: int | None = Field(default=None, ge=1)
+    grid_point: tuple[tuple[str, Value], ...] = ()
+
+    @property
+    def grid_values(self) -> dict[str, Value]:
+        """Values that the grid of the scenario sets, by field; empty without a grid."""
+        return dict(self.grid_point)
+
+    def sizes(self, n: int) -> list[int]:
+        """Return the size of each swarm if there are `n` robots.
+
+        Raises
+        ------
+        InputError
+            If `n` does not suit the proportions or leaves a swarm empty.
+        """
+        shares = [swarm.share for swarm in self.swarms]
+        step = self.multiple_of or sum(shares) // math.gcd(*shares)
+        sizes = apportion(n, shares) if n > 0 else [0]
+        if n % step or min(sizes) < 1:
+            proportions = ":".join(map(str, shares))
+            raise InputError("n", n, f"must be a multiple of {step} that gives each of {proportions} a robot")
+        return sizes
+
+    def game(self, n: int) -> Game:
+        """Return the game of `n` robots.
+
+        Raises
+        ------
+        InputError
+            If the game is not allowed.
+        """
+        swarms = tuple(
+            Swarm(policy=rule.policy, size=size, drive=rule.drive, drive_action=rule.drive_action)
+            for rule, size in zip(self.swarms, self.sizes(n), strict=True)
+        )
+        return Game(swarms=swarms, **self.game_fields())
+
+    def plain(self) -> dict[str, Any]:
+        """Return the values that differ from the defaults, with names of presets, in the order of TOML."""
+        plain = self.model_dump(mode="json", exclude_defaults=True)
+        if "parameters" in plain:
+            plain["parameters"] = text_of(self.parameters)
+        if BODIES.get(self.body.name) == self.body and "body" in plain:
+            plain["body"] = self.body.name
+        return dict(sorted(plain.items(), key=lambda item: (_is_table(item[1]), item[0] != "name")))
+
+
+def _is_table(value: object) -> bool:
+    return isinstance(value, dict) or (isinstance(value, list) and isinstance(value[0], dict))
