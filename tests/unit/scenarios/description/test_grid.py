@@ -64,11 +64,7 @@ def test_fields_of_games_and_swarms() -> None:
     }
     first, second = (condition.game(6) for condition in scenario(grid).conditions)
     assert (first.puck_limit, second.puck_limit) == (None, 5)
-    assert (first.parameters.friction, first.parameters.preempt, first.parameters.leg_mean) == (
-        0.3,
-        True,
-        3.0,
-    )
+    assert (first.parameters.friction, first.parameters.leg_mean) == (0.3, 3.0)
     assert [(swarm.size, swarm.drive) for swarm in first.swarms] == [(2, 0.5), (4, 0.6)]
 
 
