@@ -1,12 +1,11 @@
 # cautious.py
-"""A policy: flee from other swarms, but for every so many meetings."""
+"""A policy that flees several times, then fights once."""
 
-from kswarms.agents.actions import AWAY, TOWARDS, Action
-from kswarms.agents.policies.interface import Setting
+from kswarms import AWAY, TOWARDS, Action, Setting
 
 
 class Cautious:
-    """Flees `patience` times from a robot of another swarm, then fights once, and so on."""
+    """Against other swarms, flee `patience` times, then fight once; repeat."""
 
     def __init__(self, setting: Setting, patience: int = 3) -> None:
         self.swarm = setting.swarm
@@ -15,7 +14,7 @@ class Cautious:
         self.meetings = 0
 
     def choose(self, opponent: int) -> Action:
-        """Return what to do about a robot of swarm `opponent`, counted from 0."""
+        """Return the action against a robot of swarm `opponent`, counted from 0."""
         if opponent == self.swarm:
             return self.flight
         self.meetings += 1

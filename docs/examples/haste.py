@@ -4,13 +4,11 @@
 from numpy.random import Generator
 from pydantic import Field
 
-from kswarms.agents.learning.bandit import Bandit
-from kswarms.agents.learning.rewards import Reward
-from kswarms.agents.learning.selection_rules import Rule
+from kswarms import Bandit, Reward, Rule
 
 
 class Haste(Reward):
-    """Program time is worth its seconds, a conflict costs `cost` for each of its own."""
+    """A second of program earns 1, a second of conflict costs `cost`."""
 
     cost: float = Field(0.5, ge=0)
 
@@ -20,12 +18,12 @@ class Haste(Reward):
 
 
 class EpsilonGreedy(Rule):
-    """The best arm, but with probability `epsilon` a random one."""
+    """The best arm; with probability `epsilon` a random arm."""
 
     epsilon: float = Field(0.1, ge=0, le=1)
 
     def prefer(self, bandit: Bandit, draws: Generator) -> int:
-        """Return the arm to pull when all were tried."""
+        """Return an arm; every arm has been tried."""
         arms = len(bandit.count)
         if draws.random() < self.epsilon:
             return int(draws.integers(arms))

@@ -1,5 +1,6 @@
-"""The documentation does what it says: its files and commands are tried in the order of the text."""
+"""The documentation does what it says: its files, commands and code run in the order of the text."""
 
+import doctest
 import os
 import re
 import shlex
@@ -7,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pyarrow.parquet as pq
 import pytest
@@ -17,20 +19,43 @@ from kswarms.scenarios.cli import invoke
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.glob("*.md"))]
 
 
 def blocks(page: Path, *languages: str) -> Iterator[str]:
-    """Return the blocks of code of a page in their order."""
+    """Yield the blocks of code of a page in their order."""
     for language, code in BLOCK.findall(page.read_text(encoding="utf-8")):
         if language in languages:
             yield code
 
 
-def named(page: Path) -> dict[str, str]:
+def named_files(page: Path) -> dict[str, str]:
     """Return the blocks whose first line is the name of a file, by that name."""
-    codes = (re.match(r"# (\w+\.\w+)\n", code) for code in blocks(page, "python", "toml"))
-    return {match[1]: match.string for match in codes if match}
+    matches = (re.match(r"# (\w+\.\w+)\n", code) for code in blocks(page, "python", "toml"))
+    return {match[1]: match.string for match in matches if match}
+
+
+def follow(page: Path) -> list[str]:
+    """Write the files of a page, run its console commands and doctests, in their order; return the commands."""
+    commands: list[str] = []
+    variables: dict[str, Any] = {}
+    runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS)
+    for code in blocks(page, "python", "toml", "console"):
+        if match := re.match(r"# (append to )?(\w+\.\w+)\n", code):
+            with Path(match[2]).open("a" if match[1] else "w") as file:
+                file.write(code)
+        elif code.startswith("$ "):
+            for line in code.splitlines():
+                program, *arguments = shlex.split(line.removeprefix("$ "))
+                assert program == "kswarms"
+                assert invoke([*arguments, "--jobs", "1"] if "run" in arguments else arguments) == 0
+                commands.append(line)
+        elif code.startswith(">>> "):
+            examples = doctest.DocTestParser().get_doctest(code, variables, page.name, str(page), 0)
+            runner.run(examples, clear_globs=False)
+            variables = examples.globs
+    assert runner.summarize().failed == 0
+    return commands
 
 
 @pytest.fixture(autouse=True)
@@ -40,24 +65,14 @@ def _in_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
 
 
 @pytest.mark.parametrize("example", sorted((DOCS / "examples").glob("*.py")), ids=lambda path: path.name)
-def test_the_examples_are_shown_as_they_are(example: Path) -> None:
-    shown = [named(page)[example.name] for page in PAGES if example.name in named(page)]
+def test_the_pages_show_the_examples_unchanged(example: Path) -> None:
+    shown = [named_files(page)[example.name] for page in PAGES if example.name in named_files(page)]
     assert shown == [example.read_text(encoding="utf-8")]
 
 
 @pytest.mark.slow
 def test_the_tutorial_works_from_an_empty_directory() -> None:
-    for name, code in named(DOCS / "tutorial.md").items():
-        Path(name).write_text(code)
-    commands = [line[2:] for code in blocks(DOCS / "tutorial.md", "console") for line in code.splitlines()]
-    assert len(commands) == 3
-    for k, command in enumerate(commands):
-        if k == 2:
-            (added,) = (code for code in blocks(DOCS / "tutorial.md", "toml") if ", added\n" in code)
-            Path("crowd.toml").write_text(Path("crowd.toml").read_text() + added)
-        program, *arguments = shlex.split(command)
-        assert program == "kswarms"
-        assert invoke([*arguments, "--jobs", "1"] if "run" in arguments else arguments) == 0
+    assert len(follow(DOCS / "tutorial.md")) == 3
     runs = pq.read_table("results/crowd/runs.parquet")
     assert set(runs["condition"].to_pylist()) == {"flee", "fight back", "cautious"}
     assert len(runs) == 3 * 2 * 2 * 2  # conditions, densities, seeds, swarms
@@ -65,26 +80,27 @@ def test_the_tutorial_works_from_an_empty_directory() -> None:
 
 
 @pytest.mark.slow
-def test_the_scripts_and_tests_of_the_guides_run() -> None:
-    files = named(DOCS / "extending.md") | named(DOCS / "howto.md") | named(DOCS / "tutorial.md")
+@pytest.mark.parametrize("page", [ROOT / "README.md", DOCS / "howto.md"], ids=lambda page: page.name)
+def test_the_scripts_and_tests_of_a_page_run(page: Path) -> None:
+    files = named_files(DOCS / "tutorial.md") | named_files(DOCS / "extending.md") | named_files(page)
     for name, code in files.items():
         Path(name).write_text(code)
-    # As a user's pytest, whose directory is not this repository.
-    pytest_alone = "-m pytest -q test_my_classes.py test_crowd.py"
-    for arguments, expected in ((pytest_alone, "passed"), ("sweep.py", "pucks_2")):
+    # As in a user's project: pytest runs outside this repository.
+    tests = "-m pytest -q test_crowd.py" + (" test_my_classes.py" if page.name == "howto.md" else "")
+    for arguments, expected in ((tests, "passed"), ("sweep.py", "pucks_2")):
         command = [sys.executable, "-W", "error", *arguments.split()]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stdout + done.stderr
         assert expected in done.stdout
 
 
-def test_the_readme_counts_the_verdicts_that_the_page_of_findings_gives() -> None:
+def test_the_readme_and_the_page_of_findings_have_the_same_verdicts() -> None:
     page = (DOCS / "findings.md").read_text(encoding="utf-8")
     given = re.findall(r"\| \**(holds|fails|undecided)\** \|", page)
     holds, fails, undecided = map(given.count, ("holds", "fails", "undecided"))
-    told = f"of {len(given)} statements, {holds} hold, {fails} fail and {undecided} are undecided"
+    expected = f"of {len(given)} statements, {holds} hold, {fails} fail and {undecided} are undecided"
     assert len(given) == len(FINDINGS)
-    assert told in (ROOT / "README.md").read_text(encoding="utf-8")
+    assert expected in (ROOT / "README.md").read_text(encoding="utf-8")
 
 
 def test_every_command_of_the_documentation_exists() -> None:
@@ -97,3 +113,8 @@ def test_every_command_of_the_documentation_exists() -> None:
     assert {"list", "show", "run", "calibrate"} <= commands
     for command in sorted(commands):
         assert invoke([command, "--help"]) == 0
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_no_page_is_longer_than_300_lines(page: Path) -> None:
+    assert len(page.read_text(encoding="utf-8").splitlines()) <= 300
