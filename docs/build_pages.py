@@ -1,7 +1,8 @@
-"""A hook of mkdocs: makes the pages that are not written by hand, and refuses a page that needs the network.
+"""Hook of mkdocs: generate the reference and notebook pages; refuse pages that need the network.
 
-The reference has a page for each package, with every public module that is in it. A notebook, kept as text by
-jupytext, is executed in a process of its own, and its page shows what came out; if it fails, the build does.
+The reference has one page for each package and one for the columns of the tables. Notebooks are kept as text
+(jupytext). Each is executed in its own process, and its page shows the output. If a notebook fails, the build
+fails.
 """
 
 import base64
@@ -16,16 +17,19 @@ from mkdocs.structure.files import File, Files
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
 
+from kswarms.agents.common.columns import SCHEMA_VERSION, data_dictionary
+
 ROOT: Final = Path(__file__).parent.parent
 PACKAGES: Final = ("agents", "model", "scenarios", "analysis")
-SECONDS: Final = 300
-"""What a cell may take; it takes a few, but a shared machine may be slow."""
+CELL_TIMEOUT: Final = 300
+"""Seconds; a cell needs a few, but the machine may be busy."""
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Add the pages that are made here."""
+    """Add the generated pages."""
     for package in PACKAGES:
         files.append(File.generated(config, f"reference/{package}.md", content=reference(package)))
+    files.append(File.generated(config, "reference/columns.md", content=columns()))
     for path in sorted((ROOT / "docs" / "notebooks").glob("*.py")):
         page, pictures = notebook(path)
         files.append(File.generated(config, f"notebooks/{path.stem}.md", content=page))
@@ -43,7 +47,7 @@ def on_post_page(output: str, **_: Any) -> str:
 
 
 def reference(package: str) -> str:
-    """Return the page of a package: what it says of itself, then each public module."""
+    """Return the page of a package: its docstring, then each public module."""
     names = []
     for path in sorted((ROOT / package).rglob("*.py")):
         parts = ("kswarms", *path.relative_to(ROOT).with_suffix("").parts)
@@ -54,12 +58,23 @@ def reference(package: str) -> str:
     return "\n\n".join([f"# kswarms.{package}", *(f"::: {name}" for name in names)])
 
 
+def columns() -> str:
+    """Return the page of the columns of all tables."""
+    return (
+        "# Columns of the tables\n\n"
+        "The tables in a results directory are Parquet files. Robots are numbered from 0, S1's first.\n"
+        "Swarms are numbered from 1. The metadata of each file holds the version of its columns as\n"
+        f"`kswarms_schema`, now {SCHEMA_VERSION}. Files of kswarms 0.1.0 hold no version.\n\n"
+        f"{data_dictionary()}"
+    )
+
+
 def notebook(path: Path) -> tuple[str, dict[str, bytes]]:
-    """Execute a notebook; return its page, and its pictures by their names."""
+    """Execute a notebook; return its page, and its pictures by name."""
     content = jupytext.read(path)
-    where = {"metadata": {"path": path.parent}}  # as Jupyter does
-    quiet = ["--log-level=ERROR"]  # it warns that its port, which is of this machine alone, is not encrypted
-    client = NotebookClient(content, timeout=SECONDS, resources=where, extra_arguments=quiet)
+    where = {"metadata": {"path": path.parent}}  # the working directory, as in Jupyter
+    quiet = ["--log-level=ERROR"]  # else it warns that its local port is not encrypted
+    client = NotebookClient(content, timeout=CELL_TIMEOUT, resources=where, extra_arguments=quiet)
     try:
         client.execute()
     except CellExecutionError as error:
@@ -71,20 +86,20 @@ def notebook(path: Path) -> tuple[str, dict[str, bytes]]:
             parts.append(cell.source)
             continue
         parts.append(f"```python\n{cell.source}\n```")
-        parts += [_shown(output, path.stem, pictures) for output in cell.outputs]
-    parts.append(f"*The notebook `docs/notebooks/{path.name}`, as it ran; jupytext opens it in Jupyter.*")
+        parts += [_format_output(output, path.stem, pictures) for output in cell.outputs]
+    parts.append(f"*The executed notebook `docs/notebooks/{path.name}`; jupytext opens it in Jupyter.*")
     return "\n\n".join(parts), pictures
 
 
-def _shown(output: Any, stem: str, pictures: dict[str, bytes]) -> str:
+def _format_output(output: Any, stem: str, pictures: dict[str, bytes]) -> str:
     if output.output_type == "stream":
         return f"```text\n{output.text}\n```"
     data = output.data
     if "image/png" in data:
         name = f"{stem}-{len(pictures) + 1}.png"
         pictures[name] = base64.b64decode(data["image/png"])
-        return f"![What the cell drew]({name})"
+        return f"![Output of the cell]({name})"
     if "text/html" in data:
-        # Without what pandas says of its look, the theme's own style applies to a table.
+        # Drop the style of pandas, so that the theme's style applies.
         return re.sub(r'(?s)<style.*?</style>| border="1" class="dataframe"', "", data["text/html"])
     return f"```text\n{data['text/plain']}\n```"

@@ -118,3 +118,23 @@ def test_every_command_of_the_documentation_exists() -> None:
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_no_page_is_longer_than_300_lines(page: Path) -> None:
     assert len(page.read_text(encoding="utf-8").splitlines()) <= 300
+
+
+@pytest.mark.parametrize("page", PAGES[:2], ids=lambda page: page.name)
+def test_the_paths_that_a_page_names_exist(page: Path) -> None:
+    text = BLOCK.sub("", page.read_text(encoding="utf-8"))
+    links = re.findall(r"\]\((?!https?:)([^)#]+)", text)
+    quoted = re.findall(r"`((?:agents|model|scenarios|analysis|tests|docs|kswarms)/[\w./-]+)`", text)
+    missing = [name for name in [*links, *quoted] if not (ROOT / name).exists()]
+    assert missing == []
+
+
+def test_the_picture_of_the_packages_shows_every_folder() -> None:
+    picture = (DOCS / "images" / "rooms.svg").read_text(encoding="utf-8")
+    drawn = re.findall(r'class="room"[^>]*>(\w+)<', picture)
+    folders = [
+        path.parent.name
+        for package in ("agents", "model", "scenarios", "analysis")
+        for path in (ROOT / package).glob("*/__init__.py")
+    ]
+    assert sorted(drawn) == sorted(folders)

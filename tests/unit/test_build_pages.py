@@ -1,10 +1,12 @@
-"""The hook that makes pages of the documentation: what it makes, and what it refuses."""
+"""The hook that generates pages of the documentation."""
 
 import importlib.util
 from pathlib import Path
 
 import pytest
 from mkdocs.exceptions import PluginError
+
+from kswarms.agents.common.columns import TABLES
 
 ROOT = Path(__file__).parents[2]
 spec = importlib.util.spec_from_file_location("build_pages", ROOT / "docs" / "build_pages.py")
@@ -34,13 +36,20 @@ def test_a_page_may_link_to_another_host() -> None:
 
 def test_the_reference_has_every_public_module() -> None:
     page = pages.reference("agents")
-    for name in ("agents", "agents.policies", "agents.conformance", "agents.conformance.rules"):
+    for name in ("agents", "agents.policies.learner", "agents.conformance", "agents.conformance.rules"):
         assert f"\n::: kswarms.{name}\n" in f"{page}\n"
     assert "::: kswarms.scenarios.cli.__main__" not in pages.reference("scenarios")
 
 
+def test_the_page_of_columns_has_every_table() -> None:
+    page = pages.columns()
+    for name in TABLES:
+        assert f"### `{name}.parquet`" in page
+    assert "| `pucks` | integer |" in page
+
+
 @pytest.mark.slow
-def test_a_notebook_shows_what_came_out_and_may_not_fail(tmp_path: Path) -> None:
+def test_a_notebook_page_shows_the_output_and_a_failing_notebook_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "small.py"
     path.write_text(
         "# %% [markdown]\n# # Title\n\n# %%\nprint('said')\n\n# %%\n6 * 7\n\n"
@@ -51,7 +60,7 @@ def test_a_notebook_shows_what_came_out_and_may_not_fail(tmp_path: Path) -> None
     for part in ("# Title", "print('said')\n```", "```text\nsaid\n", "```text\n42\n```", "<td>1</td>"):
         assert part in page
     assert 'class="dataframe"' not in page
-    assert "![What the cell drew](small-1.png)" in page
+    assert "![Output of the cell](small-1.png)" in page
     assert pictures["small-1.png"].startswith(b"\x89PNG")
     path.write_text("# %%\n1 / 0\n")
     with pytest.raises(PluginError, match=r"small\.py fails: ZeroDivisionError: division by zero"):
