@@ -80,14 +80,21 @@ def test_the_tutorial_works_from_an_empty_directory() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("page", [ROOT / "README.md", DOCS / "howto.md"], ids=lambda page: page.name)
-def test_the_scripts_and_tests_of_a_page_run(page: Path) -> None:
-    files = named_files(DOCS / "tutorial.md") | named_files(DOCS / "extending.md") | named_files(page)
-    for name, code in files.items():
+def test_the_guide_to_extending_works_after_the_tutorial() -> None:
+    Path("cautious.py").write_text(named_files(DOCS / "tutorial.md")["cautious.py"])
+    assert len(follow(DOCS / "extending.md")) == 1
+
+
+@pytest.mark.slow
+def test_the_scripts_and_tests_of_the_guides_run() -> None:
+    readme, howto = named_files(ROOT / "README.md"), named_files(DOCS / "howto.md")
+    assert readme["test_crowd.py"] == howto["test_crowd.py"]
+    files = named_files(DOCS / "tutorial.md") | named_files(DOCS / "extending.md") | howto
+    for name, code in (files | {"readme_sweep.py": readme["sweep.py"]}).items():
         Path(name).write_text(code)
     # As in a user's project: pytest runs outside this repository.
-    tests = "-m pytest -q test_crowd.py" + (" test_my_classes.py" if page.name == "howto.md" else "")
-    for arguments, expected in ((tests, "passed"), ("sweep.py", "pucks_2")):
+    tests = "-m pytest -q test_my_classes.py test_crowd.py"
+    for arguments, expected in ((tests, "passed"), ("sweep.py", "pucks_2"), ("readme_sweep.py", "pucks_2")):
         command = [sys.executable, "-W", "error", *arguments.split()]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stdout + done.stderr
