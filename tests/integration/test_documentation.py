@@ -80,9 +80,10 @@ def test_the_tutorial_works_from_an_empty_directory() -> None:
 
 
 @pytest.mark.slow
-def test_the_guide_to_extending_works_after_the_tutorial() -> None:
+def test_the_pages_on_scenarios_and_extending_work_after_the_tutorial() -> None:
     Path("cautious.py").write_text(named_files(DOCS / "tutorial.md")["cautious.py"])
-    assert len(follow(DOCS / "extending.md")) == 1
+    assert len(follow(DOCS / "scenarios.md")) == 2
+    follow(DOCS / "extending.md")
 
 
 @pytest.mark.slow
