@@ -36,7 +36,7 @@ def named_files(page: Path) -> dict[str, str]:
 
 
 def follow(page: Path) -> list[str]:
-    """Write the files of a page, run its console commands and doctests, in their order; return the commands."""
+    """Follow a page in its order: write files, run console commands and doctests. Return the commands."""
     commands: list[str] = []
     variables: dict[str, Any] = {}
     runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS)
