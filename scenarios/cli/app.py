@@ -1,38 +1,64 @@
 """The command line ``kswarms``: its commands, its errors and its exit status.
 
-Each command is a function in a module of this package; what takes long to import is imported by the command
-that needs it.
+A command's module is imported when the command is called, so that help and shell completion start fast.
 """
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from importlib import import_module
 from typing import Annotated, Any, Final
 
 import typer
 from pydantic import ValidationError
+from typer.core import TyperGroup
 
 from kswarms import __version__
 from kswarms.agents.common.errors import InputError
-from kswarms.scenarios.cli.calibrate import calibrate
-from kswarms.scenarios.cli.catalogue import list_scenarios, show
-from kswarms.scenarios.cli.conflicts import conflicts
-from kswarms.scenarios.cli.contribution import contribution
-from kswarms.scenarios.cli.explore import explore
-from kswarms.scenarios.cli.film import film
-from kswarms.scenarios.cli.report import report
-from kswarms.scenarios.cli.run import run
-from kswarms.scenarios.cli.status import replay, status
-from kswarms.scenarios.runs.outcome import RunError
 
 INTERRUPTED: Final = 130
 
+COMMANDS: Final = {
+    "list": ("catalogue", "list_scenarios", "List scenarios and tables, with their cost."),
+    "show": ("catalogue", "show", "Print a scenario as TOML, ready to edit."),
+    "run": ("run", "run", "Play scenarios; write tables and figures."),
+    "status": ("status", "status", "Show what is done and what failed, and why."),
+    "replay": ("status", "replay", "Play one run again and compare the results."),
+    "calibrate": ("calibrate", "calibrate", "Fit the free parameters to Table 6.1."),
+    "explore": ("explore", "explore", "Open a page to watch and change games."),
+    "film": ("film", "film", "Film a game or part of it."),
+    "conflicts": ("conflicts", "conflicts", "List the conflicts of a game."),
+    "contribution": ("contribution", "contribution", "Measure what robots contribute to their swarm."),
+    "report": ("report", "report", "Write all results into one HTML file."),
+}
+"""Module, function and short help of each command. The help of a command is the docstring of its function."""
+
+
+class LazyGroup(TyperGroup):
+    """Group of commands that imports a command when it is called; help and completion need only its name."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
+        """Return name, command and remaining arguments."""
+        name, command, rest = super().resolve_command(ctx, args)
+        return name, _load(name) if name else command, rest
+
+
+def _load(name: str) -> Any:
+    module, function, _ = COMMANDS[name]
+    single = typer.Typer(rich_markup_mode=None, add_completion=False)
+    single.command(name)(getattr(import_module(f"kswarms.scenarios.cli.{module}"), function))
+    return typer.main.get_command(single)
+
+
 app = typer.Typer(
+    cls=LazyGroup,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     help="Competing swarms of foraging robots: play the scenarios of the catalogue and see who wins.",
     epilog="Example: kswarms run fig-6.1a --densities 6,30 --seeds 3\n\n"
     "Exit status: 0 done, 1 failed, 2 bad input, 130 interrupted.",
 )
+for _name, (_, _, _short) in COMMANDS.items():
+    app.command(_name, short_help=_short)(lambda: None)  # replaced by `LazyGroup.resolve_command`
 
 
 def main() -> None:
@@ -46,7 +72,7 @@ def invoke(arguments: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     arguments : sequence of str, optional
-        The words after ``kswarms``; by default those that this process was started with.
+        The words after ``kswarms``; the arguments of this process by default.
 
     Returns
     -------
@@ -57,34 +83,38 @@ def invoke(arguments: Sequence[str] | None = None) -> int:
         words = sys.argv[1:] if arguments is None else arguments
         code: int | None = app(words, prog_name="kswarms", standalone_mode=False, obj=("kswarms", *words))
     except InputError as error:
-        return _complain(str(error), 2)
-    except RunError as error:
-        typer.echo(error.trace, err=True)  # a fault of the program, not of its input
-        return _complain(str(error), 1)
+        return _print_error(str(error), 2)
     except OSError as error:
-        return _complain(str(error), 1)
+        return _print_error(str(error), 1)
     except typer.BadParameter as error:
-        return _complain(_refusal(error), 2)
-    except typer.TyperException as error:  # typer's own complaints: an unknown command or option, say
-        return _complain(error.format_message(), error.exit_code)
+        return _print_error(_describe(error), 2)
+    except typer.TyperException as error:  # an unknown command or option, for example
+        return _print_error(error.format_message(), error.exit_code)
+    except RuntimeError as error:
+        from kswarms.scenarios.runs.outcome import RunError
+
+        if not isinstance(error, RunError):
+            raise
+        typer.echo(error.trace, err=True)  # an error of the program, not of its input
+        return _print_error(str(error), 1)
     if code == INTERRUPTED:
-        return _complain("interrupted", code)
+        return _print_error("interrupted", code)
     return code or 0
 
 
-def _refusal(error: typer.BadParameter) -> str:
-    """Tell the option, its value and what is allowed, as all input is refused; typer leaves the value out."""
+def _describe(error: typer.BadParameter) -> str:
+    """Return option, value and rule in the form of `InputError`; the message of typer lacks the value."""
     cause = error.__cause__
     if not isinstance(cause, ValidationError) or error.param is None:
         return error.format_message()
     found = InputError.from_validation(cause, ())
     field = error.param.opts[-1].lstrip("-").replace("-", "_")
-    # Of a choice, typer says the value itself.
+    # For a choice, typer's rule repeats the value.
     allowed = found.allowed.removeprefix(f"Value error, {found.value!r} ").removesuffix(".")
     return str(InputError(field, found.value, allowed))
 
 
-def _complain(message: str, status: int) -> int:
+def _print_error(message: str, status: int) -> int:
     typer.echo(f"kswarms: {' '.join(message.split())}", err=True)
     return status
 
@@ -104,35 +134,3 @@ def _without_command(
 ) -> None:
     if context.invoked_subcommand is None:
         typer.echo(context.get_help())
-
-
-_COMMANDS: Final[dict[Callable[..., Any], tuple[str, str]]] = {
-    list_scenarios: ("List scenarios and tables, with what they take.", "list"),
-    show: ("Print a scenario as TOML, ready to edit.", "show fig-6.1c"),
-    run: (
-        "Play scenarios; write tables and figures.",
-        "run fig-6.1a fig-6.1c --densities 6,30,50 --seeds 5",
-    ),
-    status: ("Tell what is done, what failed and why.", "status results"),
-    replay: ("Play one run again, and compare.", "replay results 0c2b1f7a9d3e4f56"),
-    calibrate: (
-        "Fit the free parameters to Table 6.1.",
-        "calibrate --free friction,gamma --densities 16,30,50 --seeds 2",
-    ),
-    explore: ("Open a page in which games are watched.", "explore fig-6.4b"),
-    film: ("Film a game, or a stretch of it.", "film fig-6.1c --n 50 --to 120 --out fight.gif"),
-    conflicts: ("Tell a game conflict by conflict.", "conflicts fig-6.4b --n 6 --robot 3 --from 0"),
-    contribution: (
-        "Measure what robots contributed to their swarm.",
-        "contribution fig-6.4b --n 16 --robots S2 --seeds 5",
-    ),
-    report: ("Write all results into one HTML file.", "report results --out report.html"),
-}
-"""What each command is in the list of all, and how it is used."""
-
-for _command, (_short, _example) in _COMMANDS.items():
-    app.command(
-        _example.split()[0],
-        short_help=_short,
-        epilog=f"Example: kswarms {_example}",
-    )(_command)

@@ -8,9 +8,10 @@ from typing import Annotated, Any
 
 import typer
 
+from kswarms.scenarios.calibration import fit
 from kswarms.scenarios.catalogue.selecting import integers, words
-from kswarms.scenarios.cli.options import Jobs, directory, processes
-from kswarms.scenarios.cli.progress import tracked
+from kswarms.scenarios.cli.options import Jobs, count_workers, parse_directory
+from kswarms.scenarios.cli.progress import track
 from kswarms.scenarios.runs.run import Run
 
 
@@ -19,7 +20,7 @@ def calibrate(
         str | None,
         typer.Option(
             metavar="NAME,...",
-            help="Parameters to fit, two at least, of those of docs/calibration.md. [default: all]",
+            help="Parameters to fit, at least two; docs/calibration.md lists them. [default: all]",
         ),
     ] = None,
     densities: Annotated[
@@ -31,46 +32,51 @@ def calibrate(
     seeds: Annotated[int, typer.Option(help="Games for each cell of the table and point, at least 1.")] = 4,
     generations: Annotated[int, typer.Option(help="Generations of the search, at least 1.")] = 25,
     population: Annotated[
-        int, typer.Option(help="Points in a generation, at least 4; 0: as many as is usual.")
+        int, typer.Option(help="Points in a generation, at least 4; 0 for the usual number.")
     ] = 0,
     validation_seeds: Annotated[
         int, typer.Option(help="Games for each cell in the validation, at least 5.")
     ] = 20,
     jobs: Jobs = None,
     out: Annotated[
-        Path, typer.Option(parser=directory, metavar="DIR", help="What is kept, and gone on from.")
+        Path,
+        typer.Option(
+            parser=parse_directory, metavar="DIR", help="Output directory; an interrupted fit is resumed."
+        ),
     ] = Path("calibration"),
-    fresh: Annotated[bool, typer.Option("--fresh", help="Forget what DIR holds.")] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Delete the fit in DIR and start again.")] = False,
 ) -> None:
-    """Fit the free parameters to Table 6.1; called again after an interruption, go on."""
-    from kswarms.analysis.results.published import table_6_1
-    from kswarms.scenarios.calibration import fit as calibration
+    """Fit the free parameters to Table 6.1. The same command resumes an interrupted fit.
 
-    asked: dict[str, Any] = {"seeds": seeds, "generations": generations, "population": population}
+    Example: kswarms calibrate --free friction,gamma --densities 16,30,50 --seeds 2
+    """
+    from kswarms.analysis.results.published import table_6_1
+
+    options: dict[str, Any] = {"seeds": seeds, "generations": generations, "population": population}
     if free is not None:
-        asked["free"] = words(free)
+        options["free"] = words(free)
     if densities is not None:
-        asked["densities"] = integers("densities", densities)
-    setup = calibration.Setup(**asked, validation_seeds=validation_seeds)
-    workers = processes(jobs)
+        options["densities"] = integers("densities", densities)
+    setup = fit.Setup(**options, validation_seeds=validation_seeds)
+    workers = count_workers(jobs)
     table = table_6_1()
     target = {
         (opponent, int(n)): float(percent)
         for opponent, column in (("avoid", "fig_6_4a_attack_pct"), ("attack", "fig_6_4b_attack_pct"))
         for n, percent in zip(table["n"], table[column], strict=True)
     }
-    trace = calibration.calibrate(
-        setup, target, partial(_learned, workers), out, fresh, report=partial(typer.echo, err=True)
+    trace = fit.calibrate(
+        setup, target, partial(_play, workers), out, fresh, report=partial(typer.echo, err=True)
     )
-    for line in calibration.summary(trace):
+    for line in fit.summary(trace):
         typer.echo(line)
-    typer.echo(f"trace:      {out / calibration.TRACE}")
+    typer.echo(f"trace:      {out / fit.TRACE}")
 
 
-def _learned(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, float], None, None]:
-    """Play runs with one learning swarm and yield each with the share of it that learned to attack."""
+def _play(workers: int, runs: Sequence[Run]) -> Generator[tuple[Run, float], None, None]:
+    """Play runs with one learning swarm; yield each with the share of its robots that learned to attack."""
     from kswarms.scenarios.runs.sweep import play_all
 
-    with closing(play_all(runs, jobs)) as played:
-        for run, outcome in tracked(played, "learning", len(runs)):
+    with closing(play_all(runs, workers)) as played:
+        for run, outcome in track(played, "learning", len(runs)):
             yield run, outcome.policies[0]["attack_share"]

@@ -1,4 +1,4 @@
-"""What there is to play: ``list`` and ``show``."""
+"""``list`` and ``show``: the scenarios that can be played."""
 
 from collections.abc import Iterable
 from typing import Annotated
@@ -7,27 +7,29 @@ import typer
 
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selecting import chosen
-from kswarms.scenarios.cli.options import ids
-from kswarms.scenarios.cli.printing import print_columns
-from kswarms.scenarios.cli.progress import clock
+from kswarms.scenarios.cli.options import complete_ids
+from kswarms.scenarios.cli.printing import format_duration, print_columns
 from kswarms.scenarios.description.condition import Condition
 from kswarms.scenarios.description.scenario import Scenario, toml_of
 from kswarms.scenarios.runs.cost import cpu_seconds
 
 
 def list_scenarios() -> None:
-    """List the scenarios of the catalogue, and the tables made of some, with what they take on one core."""
+    """List the scenarios and tables of the catalogue, with the CPU time that they take.
+
+    Example: kswarms list
+    """
     rows = [("id", "curves", "runs", "CPU time", "title")]
     for name, scenario in CATALOGUE.items():
-        rows.append((name, *_size([scenario]), scenario.title))
+        rows.append((name, *_cost([scenario]), scenario.title))
     for name, table in TABLES.items():
-        rows.append((name, *_size(CATALOGUE[each] for each in table.scenarios), table.title))
-    rows.append(("--all", *_size(CATALOGUE.values()), "All scenarios; what they share is played once"))
+        rows.append((name, *_cost(CATALOGUE[each] for each in table.scenarios), table.title))
+    rows.append(("--all", *_cost(CATALOGUE.values()), "All scenarios; shared runs are played once"))
     print_columns(rows, left=(0, 4))
 
 
-def _size(scenarios: Iterable[Scenario]) -> tuple[str, str, str]:
-    """Return the curves, the runs and their CPU time, what is the same but for its name once."""
+def _cost(scenarios: Iterable[Scenario]) -> tuple[str, str, str]:
+    """Return the number of curves and runs and their CPU time; equal runs count once."""
     seeds: dict[tuple[Condition, int], int] = {}
     for scenario in scenarios:
         for condition in scenario.conditions:
@@ -39,18 +41,21 @@ def _size(scenarios: Iterable[Scenario]) -> tuple[str, str, str]:
         games * cpu_seconds(n, each.learning, each.duration, each.puck_limit, each.parameters.period)
         for (each, n), games in seeds.items()
     )
-    return str(len(curves)), f"{sum(seeds.values()):,}", clock(cost)
+    return str(len(curves)), f"{sum(seeds.values()):,}", format_duration(cost)
 
 
 def show(
     wanted: Annotated[
         str,
         typer.Argument(
-            metavar="ID", help="A scenario or table of the list, or my.toml.", autocompletion=ids
+            metavar="ID", help="Scenario or table of `kswarms list`, or my.toml.", autocompletion=complete_ids
         ),
     ],
 ) -> None:
-    """Print a scenario as TOML, or those that a table is made of; edited, `kswarms run my.toml` plays it."""
+    """Print a scenario, or the scenarios of a table, as TOML; `kswarms run my.toml` plays an edited copy.
+
+    Example: kswarms show fig-6.1c
+    """
     scenarios = chosen([wanted])
     typer.echo(
         toml_of(scenarios) if len(scenarios) > 1 or wanted in TABLES else scenarios[0].to_toml(), nl=False

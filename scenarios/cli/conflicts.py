@@ -1,4 +1,4 @@
-"""``conflicts``: a game told conflict by conflict."""
+"""``conflicts``: the conflicts of a game."""
 
 import math
 from typing import Annotated
@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from kswarms.agents.common.errors import InputError
-from kswarms.scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Watched, one_run
+from kswarms.scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Watched, resolve_run
 from kswarms.scenarios.cli.printing import print_columns
 
 
@@ -16,15 +16,20 @@ def conflicts(
     condition: ConditionName = None,
     n: Robots = None,
     seed: Seed = None,
-    robot: Annotated[int | None, typer.Option(help="Those of one robot, from 0. [default: of all]")] = None,
+    robot: Annotated[
+        int | None, typer.Option(help="Conflicts of this robot only, from 0. [default: of all]")
+    ] = None,
     begin: Annotated[
         float | None,
-        typer.Option("--from", help="First instant (s of the measured game). [default: learning too]"),
+        typer.Option("--from", help="First instant (s of the measured game). [default: learning included]"),
     ] = None,
     end: Annotated[float | None, typer.Option("--to", help="Last instant (s).")] = None,
 ) -> None:
-    """Play a game again and tell its conflicts: who, where, what was known, chosen and earned."""
-    found = one_run(what, run, condition, n, seed)
+    """Play a game again and list its conflicts: robots, place, knowledge, action and reward.
+
+    Example: kswarms conflicts fig-6.4b --n 6 --robot 3 --from 0
+    """
+    found = resolve_run(what, run, condition, n, seed)
     if robot is not None and not 0 <= robot < found.n:
         raise InputError("robot", robot, f"must be in 0 to {found.n - 1}")
     first, last = -math.inf if begin is None else begin, math.inf if end is None else end
@@ -32,12 +37,12 @@ def conflicts(
         raise InputError("from", begin, "must be a number of seconds")
     if not first <= last:
         raise InputError("to", end, f"must be a number of seconds, at least {first:g}")
-    from kswarms.scenarios.watch.conflicts import TOLD, conflicts_of, told
+    from kswarms.scenarios.watch.conflicts import HEADINGS, conflict_cells, conflicts_of
 
     rows = [
-        told(account, found.game.learning)
-        for account in conflicts_of(found)
-        if (robot is None or account.row["robot"] == robot)
-        and first <= account.row["start"] - found.game.learning <= last
+        conflict_cells(conflict, found.game.learning)
+        for conflict in conflicts_of(found)
+        if (robot is None or conflict.row["robot"] == robot)
+        and first <= conflict.row["start"] - found.game.learning <= last
     ]
-    print_columns([TOLD, *rows], left=range(len(TOLD)))
+    print_columns([HEADINGS, *rows], left=range(len(HEADINGS)))

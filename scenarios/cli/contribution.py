@@ -1,4 +1,4 @@
-"""``contribution``: what robots contributed to their swarm, by playing the game without them."""
+"""``contribution``: what robots contribute to their swarm, by playing the game without them."""
 
 from collections.abc import Generator, Sequence
 from contextlib import closing
@@ -10,9 +10,15 @@ import typer
 
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.catalogue.selecting import chosen
-from kswarms.scenarios.cli.options import Jobs, check_seed, directory, processes, scenario_ids
+from kswarms.scenarios.cli.options import (
+    Jobs,
+    check_seed,
+    complete_scenario_ids,
+    count_workers,
+    parse_directory,
+)
 from kswarms.scenarios.cli.printing import print_table
-from kswarms.scenarios.cli.progress import tracked
+from kswarms.scenarios.cli.progress import track
 from kswarms.scenarios.description.scenario import MOST_SEEDS
 from kswarms.scenarios.runs.outcome import Outcome
 from kswarms.scenarios.runs.run import Run
@@ -23,35 +29,36 @@ def contribution(
         str,
         typer.Argument(
             metavar="ID",
-            help="A scenario of the list, or my.toml with one.",
-            autocompletion=scenario_ids,
+            help="Scenario of `kswarms list`, or my.toml with one scenario.",
+            autocompletion=complete_scenario_ids,
         ),
     ],
     condition: Annotated[
         str | None,
-        typer.Option(
-            metavar="NAME", help="Which curve of it, as `kswarms show` names it, if it has several."
-        ),
+        typer.Option(metavar="NAME", help="Condition of the scenario, required if it has several."),
     ] = None,
-    n: Annotated[int, typer.Option(help="Robots in all, as the shares of its swarms allow.")] = 26,
+    n: Annotated[int, typer.Option(help="Robots in all; the shares of the swarms must divide it.")] = 26,
     robots: Annotated[
         str | None,
-        typer.Option(metavar="LIST", help="Robots, from 0, and swarms, as 3,7 or S2. [default: all]"),
+        typer.Option(metavar="LIST", help="Robots, from 0, and swarms: 3,7 or S2. [default: all]"),
     ] = None,
     seeds: Annotated[
-        int, typer.Option(help="Games with all robots, at least 1, each also played without each.")
+        int, typer.Option(help="Games with all robots, at least 1; each is also played without each robot.")
     ] = 20,
-    first_seed: Annotated[int, typer.Option(help="Seed of the first of these games, at least 0.")] = 0,
+    first_seed: Annotated[int, typer.Option(help="First seed, at least 0.")] = 0,
     absent_from: Annotated[
         Literal["learning", "game"],
-        typer.Option(help="Whether they are absent from the learning too, or from the measured game alone."),
+        typer.Option(help="Absent from the learning and the game, or from the measured game only."),
     ] = "learning",
     jobs: Jobs = None,
-    out: Annotated[Path, typer.Option(parser=directory, metavar="DIR", help="Where the results go.")] = Path(
-        "results"
-    ),
+    out: Annotated[
+        Path, typer.Option(parser=parse_directory, metavar="DIR", help="Results directory.")
+    ] = Path("results"),
 ) -> None:
-    """Measure what robots contributed: play the same games without each, and compare with its rewards."""
+    """Measure contributions: play the same games without each robot and compare with its rewards.
+
+    Example: kswarms contribution fig-6.4b --n 16 --robots S2 --seeds 5
+    """
     scenarios = chosen([wanted])
     if len(scenarios) > 1:
         raise InputError("id", wanted, f"must be one scenario: {', '.join(each.id for each in scenarios)}")
@@ -64,14 +71,16 @@ def contribution(
     if not 1 <= seeds <= MOST_SEEDS:
         raise InputError("seeds", seeds, f"must be at least 1, at most {MOST_SEEDS}")
     check_seed("first_seed", first_seed)
-    workers = processes(jobs)
+    workers = count_workers(jobs)
 
-    from kswarms.analysis.measures.contribution import time_sud
-    from kswarms.scenarios.contribution.games import contributions, prepare_table, robots_of, write_table
+    from kswarms.analysis.figures.contribution import draw, printed
+    from kswarms.analysis.measures.contribution import of_question, read, time_sud
+    from kswarms.scenarios.contribution.games import contributions, robots_of
+    from kswarms.scenarios.contribution.table import prepare_table, write_table
 
     numbers = robots_of(game, robots)
     prepare_table(out)
-    rows = contributions(
+    found = contributions(
         game,
         numbers,
         range(first_seed, first_seed + seeds),
@@ -80,25 +89,17 @@ def contribution(
         play=partial(_play, workers),
         time_sud=time_sud,
     )
-    typer.echo(f"table:  {write_table(out, rows)}")
-    _show(out, scenario.id, scenario.title, rows[0])
+    typer.echo(f"table:  {write_table(out, found)}")
+    question: dict[str, Any] = {"condition": name, "n": n, "absent_from": absent_from}
+    typer.echo(f"figure: {draw(out, scenario.title, scenario=scenario.id, **question)}")
+    rows = of_question(read(out), scenario=scenario.id, **question)
+    for heading, (header, *lines) in printed(rows):
+        print_table(heading, header, lines)
 
 
-def _play(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, Outcome], None, None]:
+def _play(workers: int, runs: Sequence[Run]) -> Generator[tuple[Run, Outcome], None, None]:
     from kswarms.scenarios.contribution.games import RECORD
     from kswarms.scenarios.runs.sweep import play_all
 
-    with closing(play_all(runs, jobs, RECORD)) as played:
-        yield from tracked(played, "playing", len(runs))
-
-
-def _show(out: Path, scenario: str, title: str, question: dict[str, Any]) -> None:
-    """Draw what was found and print it."""
-    from kswarms.analysis.figures.contribution import draw, printed
-    from kswarms.analysis.measures.contribution import of_question, read
-
-    named = {name: question[name] for name in ("condition", "n", "absent_from")}
-    typer.echo(f"figure: {draw(out, title, scenario=scenario, **named)}")
-    rows = of_question(read(out), scenario=scenario, **named)
-    for heading, (header, *lines) in printed(rows):
-        print_table(heading, header, lines)
+    with closing(play_all(runs, workers, RECORD)) as played:
+        yield from track(played, "playing", len(runs))

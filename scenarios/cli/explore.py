@@ -6,25 +6,26 @@ from typing import Annotated
 import typer
 
 from kswarms.agents.common.errors import InputError
-from kswarms.scenarios.cli.options import RunDigest, Watched, asked
+from kswarms.scenarios.cli.options import RunDigest, Watched, resolve_source
 
 
 def explore(
     what: Watched = None,
     run: RunDigest = "",
-    port: Annotated[
-        int, typer.Option(help="Port of this machine, 1 to 65535; 0 for any that is free.")
-    ] = 8765,
+    port: Annotated[int, typer.Option(help="Port, 1 to 65535; 0 for any free port.")] = 8765,
     no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="Only print the address, open no browser.")
+        bool, typer.Option("--no-browser", help="Print the address only; do not open a browser.")
     ] = False,
 ) -> None:
-    """Open a page in which games are watched, changed and looked into; Ctrl-C ends it."""
+    """Open a page to watch, change and inspect games. Ctrl-C ends it.
+
+    Example: kswarms explore fig-6.4b
+    """
     if find_spec("solara") is None:
         raise InputError("explore", "solara", "is not installed: pip install 'kswarms[explore]'")
     from kswarms.scenarios.explore.server import serve
     from kswarms.scenarios.explore.session import Session
 
-    start = asked(what, run)
-    Session(start).close()  # a mistake is told here, not in the page
+    start = resolve_source(what, run)
+    Session(start).close()  # reports an error here, before a page is opened
     serve(start, port, not no_browser, lambda address: typer.echo(f"page: {address}  (Ctrl-C ends it)"))

@@ -1,24 +1,22 @@
-"""``film``: a game, or a stretch of it, as a film or a contact sheet."""
+"""``film``: a game, or part of it, as a film or a contact sheet."""
 
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import Annotated, Final
 
 import typer
+from PIL.Image import Image
 
 from kswarms.agents.common.errors import InputError
-from kswarms.scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Watched, one_run
-from kswarms.scenarios.cli.progress import tracked
+from kswarms.analysis.film.files import check_film, write_film, write_sheet
+from kswarms.analysis.film.painter import ArenaPainter
+from kswarms.scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Watched, resolve_run
+from kswarms.scenarios.cli.progress import track
+from kswarms.scenarios.runs.run import Run
 
-if TYPE_CHECKING:
-    from PIL.Image import Image
-
-    from kswarms.analysis.film.painter import ArenaPainter
-    from kswarms.scenarios.watch.player import Picture, Player
-
-_MOST_PICTURES: Final = 100_000
-"""Of a film: over an hour at the usual 20 a second."""
+_MOST_FRAMES: Final = 100_000
+"""Maximum number of frames of a film: over an hour at 20 frames per second."""
 
 
 def film(
@@ -29,68 +27,52 @@ def film(
     seed: Seed = None,
     begin: Annotated[
         float,
-        typer.Option("--from", help="First instant: seconds of the measured game, negative in the learning."),
+        typer.Option("--from", help="First instant (s of the measured game), negative during learning."),
     ] = 0.0,
     end: Annotated[
         float | None, typer.Option("--to", help="Last instant (s). [default: the end of the game]")
     ] = None,
-    speed: Annotated[
-        float, typer.Option(help="Seconds of the game in a second of the film, above 0.")
-    ] = 10.0,
-    fps: Annotated[int, typer.Option(help="Pictures a second, 1 to 60.")] = 20,
-    size: Annotated[int, typer.Option(help="Width of a picture (pixels), 64 to 4096.")] = 720,
+    speed: Annotated[float, typer.Option(help="Seconds of the game per second of film, above 0.")] = 10.0,
+    fps: Annotated[int, typer.Option(help="Frames per second, 1 to 60.")] = 20,
+    size: Annotated[int, typer.Option(help="Width of a frame (pixels), 64 to 4096.")] = 720,
     sheet: Annotated[
         int | None,
-        typer.Option(metavar="K", help="Write a contact sheet of K instants, 1 to 100, instead: a PNG."),
+        typer.Option(metavar="K", help="Write a contact sheet (PNG) of K instants, 1 to 100, instead."),
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="An .mp4 or .gif, with --sheet a .png. [default: by the game]"),
+        typer.Option(metavar="FILE", help="An .mp4 or .gif; with --sheet a .png. [default: by the game]"),
     ] = None,
 ) -> None:
-    """Film a game of a scenario, or a run of a results directory, from above."""
-    found = one_run(what, run, condition, n, seed)
-    game = found.game
-    end = game.duration if end is None else end
-    first = 0.0 - game.learning
-    _check("from", begin, first <= begin < game.duration, f"must be at least {first}, below {game.duration}")
-    _check(
-        "to", end, begin < end <= game.duration, f"must be greater than {begin}, and at most {game.duration}"
-    )
+    """Film a game of a scenario, or a run of a results directory, from above.
+
+    Example: kswarms film fig-6.1c --n 50 --to 120 --out fight.gif
+    """
+    found = resolve_run(what, run, condition, n, seed)
+    length, first = found.game.duration, 0.0 - found.game.learning
+    end = length if end is None else end
+    _check("from", begin, first <= begin < length, f"must be at least {first}, below {length}")
+    _check("to", end, begin < end <= length, f"must be greater than {begin}, and at most {length}")
     _check("speed", speed, 0 < speed < math.inf, "must be greater than 0")
     _check("fps", fps, 1 <= fps <= 60, "must be in 1 to 60")
     _check("size", size, 64 <= size <= 4096, "must be in 64 to 4096")
     _check("sheet", sheet, sheet is None or 1 <= sheet <= 100, "must be in 1 to 100")
-    scenario, curve = found.labels[0]
-    name = "-".join(part for part in (scenario, curve, f"n{found.n}", f"seed{found.seed}") if part)
-    name = name.replace("/", "-")  # a curve may be called as its user likes
-    out = out or Path(f"{name}{'.mp4' if sheet is None else '.png'}")
-
-    from kswarms.analysis.film.files import check_film, write_film, write_sheet
-    from kswarms.scenarios.runs.play import run_errors
-    from kswarms.scenarios.watch.player import Player
-
+    out = out or Path(_file_name(found) + (".mp4" if sheet is None else ".png"))
     if sheet is None:
         check_film(out)
         step = speed / fps
-        fits = (end - begin) / step < _MOST_PICTURES
-        _check("speed", speed, fits, f"must be so high that there are at most {_MOST_PICTURES:,} pictures")
+        fits = (end - begin) / step < _MOST_FRAMES
+        _check("speed", speed, fits, f"must be so high that there are at most {_MOST_FRAMES:,} pictures")
         instants = [begin + k * step for k in range(int((end - begin) / step + 1e-9) + 1)]
     else:
         _check("out", str(out), out.suffix == ".png", "must end with .png for a contact sheet")
         instants = [begin + (end - begin) * (k / (sheet - 1) if sheet > 1 else 1.0) for k in range(sheet)]
-    if not out.parent.is_dir():
-        raise InputError("out", str(out), "must be in a directory that is there")
-    with run_errors(str(found)):
-        player = Player(game, found.seed)
-    try:
-        pictures = _pictures(player, instants, size, str(found))
-        if sheet is None:
-            write_film(out, pictures, fps)
-        else:
-            write_sheet(out, list(pictures))
-    finally:
-        player.close()
+    _check("out", str(out), out.parent.is_dir(), "must be in a directory that exists")
+    frames = _frames(found, instants, size)
+    if sheet is None:
+        write_film(out, frames, fps)
+    else:
+        write_sheet(out, list(frames))
     typer.echo(f"{'film' if sheet is None else 'sheet'}: {out}")
 
 
@@ -99,21 +81,30 @@ def _check(field: str, value: object, allowed: bool, rule: str) -> None:
         raise InputError(field, value, rule)
 
 
-def _pictures(player: "Player", instants: list[float], size: int, played: str) -> Iterator["Image"]:
-    """Play to each instant and paint it; the end of the game is the last, if it comes before."""
-    from kswarms.analysis.film.painter import ArenaPainter
+def _file_name(run: Run) -> str:
+    scenario, condition = run.labels[0]
+    name = "-".join(part for part in (scenario, condition, f"n{run.n}", f"seed{run.seed}") if part)
+    return name.replace("/", "-")  # a condition's name may contain any character
+
+
+def _frames(run: Run, instants: list[float], size: int) -> Iterator[Image]:
+    """Play a run and paint it at each instant, up to the end of the game."""
     from kswarms.scenarios.runs.play import run_errors
+    from kswarms.scenarios.watch.player import Player
 
-    painter = ArenaPainter(player.model.arena, player.game.body.radius, size)
-    for instant in tracked(instants, "filming", len(instants)):
-        with run_errors(played):
-            player.seek(instant)
-        yield _paint(painter, player.picture())
-        if player.ended:
-            break
-
-
-def _paint(painter: "ArenaPainter", picture: "Picture") -> "Image":
-    time, _, positions, heading, swarm, in_action, carrying, pucks = picture
-    title = f"t = {time:.1f} s" if time >= 0 else f"learning, {-time:.1f} s to the game"
-    return painter.paint(title, pucks, positions, heading, swarm, in_action, carrying)
+    with run_errors(str(run)):
+        player = Player(run.game, run.seed)
+    try:
+        painter = ArenaPainter(player.model.arena, run.game.body.radius, size)
+        for instant in track(instants, "filming", len(instants)):
+            with run_errors(str(run)):
+                player.seek(instant)
+            now = player.snapshot()
+            title = f"t = {now.time:.1f} s" if now.time >= 0 else f"learning, {-now.time:.1f} s to the game"
+            yield painter.paint(
+                title, now.pucks, now.positions, now.heading, now.swarm, now.in_action, now.carrying
+            )
+            if player.ended:
+                break
+    finally:
+        player.close()

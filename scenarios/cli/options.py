@@ -1,4 +1,4 @@
-"""What several commands ask for."""
+"""Options that several commands share, their validation and their shell completion."""
 
 import os
 from pathlib import Path
@@ -12,20 +12,18 @@ from kswarms.scenarios.catalogue.selecting import FIRST_SCENARIO, USUAL_N, chose
 from kswarms.scenarios.runs.run import LAST_SEED, Run, digest
 
 MOST_JOBS: Final = 1024
-"""Processes at most: of more, no machine has the memory."""
+"""Maximum number of worker processes; memory limits it long before."""
 
-Jobs = Annotated[
-    int | None, typer.Option(help="Processes that play, at least 1. [default: one for each CPU]")
-]
+Jobs = Annotated[int | None, typer.Option(help="Worker processes, at least 1. [default: one for each CPU]")]
 
 
-def processes(jobs: int | None) -> int:
-    """Return how many processes play: as many as asked for, or one for each CPU.
+def count_workers(jobs: int | None) -> int:
+    """Return the number of worker processes, by default one for each CPU.
 
     Raises
     ------
     InputError
-        If fewer than one is asked for.
+        If the number is out of range.
     """
     if jobs is None:
         return os.cpu_count() or 1
@@ -34,25 +32,25 @@ def processes(jobs: int | None) -> int:
     return jobs
 
 
-def ids(incomplete: str) -> list[tuple[str, str]]:
-    """Return the scenarios and tables whose ids begin so, each with its title: what the shell completes."""
+def complete_ids(incomplete: str) -> list[tuple[str, str]]:
+    """Return id and title of the scenarios and tables whose ids start with a text."""
     return [
         (name, entry.title) for name, entry in (CATALOGUE | TABLES).items() if name.startswith(incomplete)
     ]
 
 
-def scenario_ids(incomplete: str) -> list[tuple[str, str]]:
-    """Return `ids` without those of tables."""
-    return [(name, title) for name, title in ids(incomplete) if name in CATALOGUE]
+def complete_scenario_ids(incomplete: str) -> list[tuple[str, str]]:
+    """Return id and title of the scenarios whose ids start with a text."""
+    return [(name, title) for name, title in complete_ids(incomplete) if name in CATALOGUE]
 
 
-def directory(text: str) -> Path:
-    """Read the path of a directory.
+def parse_directory(text: str) -> Path:
+    """Return the path of a directory.
 
     Raises
     ------
     InputError
-        If it is empty, as of a variable that a shell does not know; it would mean the current directory.
+        If the text is empty, for example from an unset shell variable; it would mean the current directory.
     """
     if not text:
         raise InputError("out", text, "must be the path of a directory")
@@ -63,50 +61,31 @@ Watched = Annotated[
     str | None,
     typer.Argument(
         metavar="ID|DIR",
-        help="A scenario or table of the list, or my.toml; with --run, a directory of results. "
+        help="Scenario or table of `kswarms list`, or my.toml; with --run, a results directory. "
         f"[default: {FIRST_SCENARIO}]",
-        autocompletion=ids,
+        autocompletion=complete_ids,
     ),
 ]
 RunDigest = Annotated[
-    str, typer.Option(metavar="DIGEST", help="A run of DIR, played again: the column `run` of its tables.")
+    str, typer.Option(metavar="DIGEST", help="Run of DIR to play again: column `run` of its tables.")
 ]
-
-
-def asked(what: str | None, run: str) -> str | Run:
-    """Return what is to be watched: a scenario as `chosen` takes it, or a run.
-
-    Raises
-    ------
-    InputError
-        If a run is asked for that no directory has.
-    """
-    if not run:
-        return what or FIRST_SCENARIO
-    if what is None:
-        raise InputError("run", run, "needs the directory of results that has it")
-    from kswarms.scenarios.watch.recorded_run import recorded_run
-
-    return recorded_run(Path(what), run)
-
-
 ConditionName = Annotated[
     str | None,
     typer.Option(
         "--condition",
         metavar="NAME",
-        help="Curve of the scenario, as `kswarms show` names it. [default: its first]",
+        help="Condition of the scenario; see `kswarms show`. [default: the first]",
     ),
 ]
 Robots = Annotated[
     int | None,
-    typer.Option("--n", help="Robots in all, as the shares of its swarms allow. [default: near 20]"),
+    typer.Option("--n", help="Robots in all; the shares of the swarms must divide it. [default: near 20]"),
 ]
 Seed = Annotated[int | None, typer.Option("--seed", help="Seed of the game, at least 0. [default: 0]")]
 
 
 def check_seed(field: str, seed: int) -> None:
-    """Refuse a seed that is none.
+    """Validate a seed.
 
     Raises
     ------
@@ -117,15 +96,32 @@ def check_seed(field: str, seed: int) -> None:
         raise InputError(field, seed, f"must be at least 0, at most {LAST_SEED}")
 
 
-def one_run(what: str | None, run: str, condition: str | None, n: int | None, seed: int | None) -> Run:
-    """Return the run that is asked for: one of a directory by its digest, or one of a scenario.
+def resolve_source(what: str | None, run: str) -> str | Run:
+    """Return the id or file of a scenario, or the run of a results directory if a digest is given.
 
     Raises
     ------
     InputError
-        If there is no such run, or a run of a directory is asked to be another.
+        If no such run is found.
     """
-    start = asked(what, run)
+    if not run:
+        return what or FIRST_SCENARIO
+    if what is None:
+        raise InputError("run", run, "needs the results directory that has it")
+    from kswarms.scenarios.watch.recorded_run import recorded_run
+
+    return recorded_run(Path(what), run)
+
+
+def resolve_run(what: str | None, run: str, condition: str | None, n: int | None, seed: int | None) -> Run:
+    """Return a run of a results directory, by its digest, or a run of a scenario.
+
+    Raises
+    ------
+    InputError
+        If no such run exists, or a digest is combined with `condition`, `n` or `seed`.
+    """
+    start = resolve_source(what, run)
     if isinstance(start, Run):
         for field, value in (("condition", condition), ("n", n), ("seed", seed)):
             if value is not None:

@@ -1,16 +1,16 @@
-"""Tables on the terminal: those of results with lines around their cells, others as columns of words."""
+"""Tables and durations on the terminal."""
 
 from collections.abc import Iterable, Sequence
 from typing import Final
 
 import typer
 
-# As wide as the table is, for rich would break the cells in a pipe's 80 columns.
 _ANY_WIDTH: Final = 1000
+"""Width of the console (characters). In a pipe, rich would wrap cells at 80 columns."""
 
 
 def print_table(title: str, header: Sequence[str], rows: Iterable[Sequence[str]], caption: str = "") -> None:
-    """Print a table of results below its title, its caption below it."""
+    """Print a table with lines around its cells, its title above and its caption below."""
     from rich.console import Console
     from rich.table import Table
 
@@ -24,7 +24,7 @@ def print_table(title: str, header: Sequence[str], rows: Iterable[Sequence[str]]
 
 
 def print_columns(rows: Sequence[Sequence[str]], left: Iterable[int]) -> None:
-    """Print rows of as many cells each, the columns of these numbers to the left, the others to the right."""
+    """Print rows of equal length in columns; the columns in `left` are left-aligned, others right-aligned."""
     lefts = set(left)
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
@@ -33,3 +33,18 @@ def print_columns(rows: Sequence[Sequence[str]], left: Iterable[int]) -> None:
             for k, (cell, width) in enumerate(zip(row, widths, strict=True))
         )
         typer.echo("  ".join(cells).rstrip())
+
+
+def format_duration(seconds: float) -> str:
+    """Return a duration in seconds, minutes or hours.
+
+    Examples
+    --------
+    >>> format_duration(0.24), format_duration(75), format_duration(8337)
+    ('0.2 s', '1:15 min', '2:19 h')
+    """
+    if seconds < 59.95:
+        return f"{seconds:.1f} s"
+    if seconds < 3599.5:
+        return "{}:{:02} min".format(*divmod(round(seconds), 60))
+    return "{}:{:02} h".format(*divmod(round(seconds / 60), 60))

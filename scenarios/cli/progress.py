@@ -1,4 +1,4 @@
-"""How far long work is: a bar for people, of a sweep also lines of JSON for programs, or nothing."""
+"""Progress of long work on standard error: a bar, lines of JSON, or nothing."""
 
 import json
 import sys
@@ -9,6 +9,7 @@ from typing import Final, TypeVar
 import typer
 
 from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.cli.printing import format_duration
 from kswarms.scenarios.runs.outcome import Failure, Result
 from kswarms.scenarios.runs.run import Run
 
@@ -17,16 +18,16 @@ KINDS: Final = ("bar", "json", "none")
 _Step = TypeVar("_Step")
 
 _LINE_EVERY: Final = 1.0
-"""Time between two lines of JSON at least (s)."""
+"""Minimum time between two lines of JSON (s)."""
 
 
 class Count:
-    """What is done of a sweep. Long runs come first, so time left is told by CPU time, not by runs.
+    """Progress of a sweep. Long runs come first, so the time left is estimated from CPU time, not from runs.
 
     Parameters
     ----------
     runs : sequence of Run
-        All that is to be played.
+        All runs of the sweep.
     """
 
     def __init__(self, runs: Sequence[Run]) -> None:
@@ -37,7 +38,7 @@ class Count:
         self._started = time.monotonic()
 
     def add(self, run: Run, failed: bool) -> None:
-        """Count a run that ended."""
+        """Count a finished run."""
         self.done += 1
         self.failed += failed
         self.worked += run.effort
@@ -49,43 +50,39 @@ class Count:
 
     @property
     def left(self) -> float:
-        """Time left, if what is left goes as fast as what is done (s)."""
+        """Estimated time left (s)."""
         passed = time.monotonic() - self._started
-        # No less than none: the parts of a sum, added in another order, may exceed it by a rounding error.
-        rest = max(0.0, self.work - self.worked)
+        rest = max(0.0, self.work - self.worked)  # rounding errors can make it negative
         return passed * rest / self.worked if self.worked > 0 else float("inf")
 
 
-def told(played: Iterable[Result], runs: Sequence[Run], kind: str) -> Iterator[Count]:
-    """Tell on standard error how far a sweep is, and yield the count after each run.
+def show_progress(played: Iterable[Result], runs: Sequence[Run], kind: str) -> Iterator[Count]:
+    """Show the progress of a sweep on standard error; yield the count after each run.
 
     Parameters
     ----------
     played : iterable of Result
-        The runs as they end.
+        Runs as they finish.
     runs : sequence of Run
-        All that is to be played.
+        All runs of the sweep.
     kind : str
-        One of `KINDS`.
+        One of `KINDS`; without runs nothing is shown.
     """
     count = Count(runs)
-    if not runs:
-        kind = "none"  # a bar of nothing says nothing
-    tell = {"bar": _bar, "json": _lines, "none": _nothing}[kind]
-    return tell(_counted(played, count), count)
+    show = {"bar": _bar, "json": _lines, "none": _nothing}[kind if runs else "none"]
+    return show(_counted(played, count), count)
 
 
-def check_kind(kind: str) -> str:
-    """Return the kind of progress asked for.
+def check_kind(kind: str) -> None:
+    """Validate a kind of progress.
 
     Raises
     ------
     InputError
-        If there is no such kind.
+        If it is not one of `KINDS`.
     """
     if kind not in KINDS:
         raise InputError("progress", kind, f"must be one of {', '.join(KINDS)}")
-    return kind
 
 
 def _counted(played: Iterable[Result], count: Count) -> Iterator[Run]:
@@ -100,10 +97,10 @@ def _nothing(ended: Iterator[Run], count: Count) -> Iterator[Count]:
 
 
 def _lines(ended: Iterator[Run], count: Count) -> Iterator[Count]:
-    told_at = -_LINE_EVERY
+    printed_at = -_LINE_EVERY
     for run in ended:
-        if time.monotonic() >= told_at + _LINE_EVERY or count.done == count.total:
-            told_at = time.monotonic()
+        if time.monotonic() >= printed_at + _LINE_EVERY or count.done == count.total:
+            printed_at = time.monotonic()
             line = {
                 "done": count.done,
                 "failed": count.failed,
@@ -134,40 +131,27 @@ def _bar(ended: Iterator[Run], count: Count) -> Iterator[Count]:
                 description=run.labels[0][0],
                 runs=f"{count.done}/{count.total}" + (f" ({count.failed} failed)" if count.failed else ""),
                 rate=f"{count.rate:.3g}",
-                left=clock(count.left),
+                left=format_duration(count.left),
             )
             yield count
 
 
-def tracked(steps: Iterable[_Step], doing: str, total: int) -> Iterable[_Step]:
-    """Yield steps, and show a bar of them on standard error meanwhile, if that is a terminal.
+def track(steps: Iterable[_Step], doing: str, total: int) -> Iterable[_Step]:
+    """Yield steps and show a progress bar on standard error if that is a terminal.
 
     Parameters
     ----------
     steps : iterable
-        What is done, step by step.
+        The steps.
     doing : str
-        What that is, in a word.
+        Label of the bar.
     total : int
-        How many there are.
+        Number of steps.
     """
+    from rich import progress
     from rich.console import Console
-    from rich.progress import track
 
     console = Console(stderr=True)
-    return track(steps, doing, total=total, console=console, transient=True, disable=not console.is_terminal)
-
-
-def clock(seconds: float) -> str:
-    """Return a time as people say it.
-
-    Examples
-    --------
-    >>> clock(0.24), clock(75), clock(8337)
-    ('0.2 s', '1:15 min', '2:19 h')
-    """
-    if seconds < 59.95:
-        return f"{seconds:.1f} s"
-    if seconds < 3599.5:
-        return "{}:{:02} min".format(*divmod(round(seconds), 60))
-    return "{}:{:02} h".format(*divmod(round(seconds / 60), 60))
+    return progress.track(
+        steps, doing, total=total, console=console, transient=True, disable=not console.is_terminal
+    )

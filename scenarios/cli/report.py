@@ -1,38 +1,39 @@
-"""``report``: one HTML file on what a results directory holds."""
+"""``report``: one HTML file about a results directory."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import Annotated, TypeVar
 
 import typer
 
 from kswarms.agents.common.errors import InputError
+from kswarms.model.description.arena import Arena
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
-from kswarms.scenarios.cli.progress import tracked
-
-if TYPE_CHECKING:
-    from kswarms.model.description.arena import Arena
+from kswarms.scenarios.cli.progress import track
 
 _Step = TypeVar("_Step")
 
 
 def report(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Where `kswarms run` wrote its results.")],
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Results directory of `kswarms run`.")],
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="The report. [default: DIR/report.html]")
     ] = None,
     files: Annotated[
         Path | None,
         typer.Option(
-            metavar="DIR", help="Also each figure as PNG and SVG, each table as CSV, Markdown and HTML."
+            metavar="DIR", help="Also write figures as PNG and SVG, and tables as CSV, Markdown and HTML."
         ),
     ] = None,
     findings: Annotated[
         Path | None,
-        typer.Option(metavar="TOML", help="Findings of your own, judged with those of the thesis."),
+        typer.Option(metavar="TOML", help="Your own findings, judged together with those of the thesis."),
     ] = None,
 ) -> None:
-    """Write figures, tables and verdicts of all results into one HTML file that needs no network."""
+    """Write figures, tables and verdicts of all results into one HTML file that needs no network.
+
+    Example: kswarms report results --out report.html
+    """
     from kswarms.analysis.findings import FINDINGS, load
     from kswarms.analysis.report import Planned, build_report
 
@@ -66,8 +67,8 @@ def report(
     typer.echo(f"report: {path} ({path.stat().st_size / 1e6:.1f} MB)")
 
 
-def _arena(scenario: str, condition: str, n: int, seed: int) -> "Arena | None":
-    """Return where stations and bases are in a game of the catalogue, None in another."""
+def _arena(scenario: str, condition: str, n: int, seed: int) -> Arena | None:
+    """Return the arena of a game of the catalogue, None for other games."""
     try:
         return CATALOGUE[scenario].game(condition, n).arena(seed)
     except (KeyError, InputError):
@@ -75,4 +76,4 @@ def _arena(scenario: str, condition: str, n: int, seed: int) -> "Arena | None":
 
 
 def _progress(steps: Sequence[_Step]) -> Iterable[_Step]:
-    return tracked(steps, "reporting", len(steps))
+    return track(steps, "reporting", len(steps))

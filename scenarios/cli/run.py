@@ -1,10 +1,10 @@
-"""``run``: play scenarios, write tables of their results, draw them."""
+"""``run``: play scenarios, write tables of their results and draw figures."""
 
 import shlex
 from collections.abc import Sequence
 from contextlib import ExitStack, closing
 from pathlib import Path
-from typing import Annotated, Final
+from typing import Annotated
 
 import typer
 
@@ -12,17 +12,10 @@ from kswarms.agents.common.columns import RECORDED_TABLES
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selecting import chosen, integers, planned, words
-from kswarms.scenarios.cli.options import Jobs, check_seed, directory, processes
-from kswarms.scenarios.cli.options import ids as ids_to_complete
+from kswarms.scenarios.cli.options import Jobs, check_seed, complete_ids, count_workers, parse_directory
 from kswarms.scenarios.cli.printing import print_table
-from kswarms.scenarios.cli.progress import KINDS, check_kind, told
+from kswarms.scenarios.cli.progress import KINDS, check_kind, show_progress
 from kswarms.scenarios.description.scenario import Scenario
-
-_NEXT: Final = {
-    "report": "all results in one HTML file",
-    "status": "what failed, and how to see it fail again",
-}
-"""What the commands are for that a run names in the end."""
 
 
 def run(
@@ -31,46 +24,51 @@ def run(
         list[str] | None,
         typer.Argument(
             metavar="ID",
-            help="Scenarios or tables of the list, or files of your own: my.toml.",
-            autocompletion=ids_to_complete,
+            help="Scenarios or tables of `kswarms list`, or files such as my.toml.",
+            autocompletion=complete_ids,
         ),
     ] = None,
     everything: Annotated[
-        bool, typer.Option("--all", help="All scenarios, each with those --densities that suit it.")
+        bool, typer.Option("--all", help="All scenarios, each with the --densities that suit it.")
     ] = False,
     densities: Annotated[
         str | None,
         typer.Option(
-            metavar="N,N,...", help="Robots in all, as the shares of its swarms allow. [default: its own]"
+            metavar="N,N,...",
+            help="Robots in all; the shares of the swarms must divide each. [default: the scenario's]",
         ),
     ] = None,
     seeds: Annotated[
-        int | None, typer.Option(help="Games for each density, at least 1. [default: its own]")
+        int | None, typer.Option(help="Games for each density, at least 1. [default: the scenario's]")
     ] = None,
-    first_seed: Annotated[int, typer.Option(help="Seed of the first of these games, at least 0.")] = 0,
+    first_seed: Annotated[int, typer.Option(help="First seed, at least 0.")] = 0,
     jobs: Jobs = None,
     scheduler: Annotated[
         str | None,
         typer.Option(
-            metavar="ADDRESS", help="Play on the Dask cluster of this scheduler, as tcp://host:8786."
+            metavar="ADDRESS", help="Play on the Dask cluster of this scheduler, for example tcp://host:8786."
         ),
     ] = None,
     out: Annotated[
         Path,
-        typer.Option(parser=directory, metavar="DIR", help="Where the results go, and are gone on from."),
+        typer.Option(
+            parser=parse_directory, metavar="DIR", help="Results directory; an existing study is resumed."
+        ),
     ] = Path("results"),
     record: Annotated[
-        str, typer.Option(metavar="NAME,...", help=f"More tables to write: {', '.join(RECORDED_TABLES)}.")
+        str, typer.Option(metavar="NAME,...", help=f"Additional tables: {', '.join(RECORDED_TABLES)}.")
     ] = "",
-    no_figures: Annotated[bool, typer.Option("--no-figures", help="Write the tables alone.")] = False,
+    no_figures: Annotated[bool, typer.Option("--no-figures", help="Do not draw figures.")] = False,
     progress: Annotated[
-        str, typer.Option(metavar="KIND", help=f"How to tell how far it is: {', '.join(KINDS)}.")
+        str, typer.Option(metavar="KIND", help=f"How progress is shown: {', '.join(KINDS)}.")
     ] = "bar",
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print what goes wrong alone.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print errors only.")] = False,
 ) -> int:
     """Play scenarios, write tables of their results and draw a figure of each.
 
-    Called again, after whatever end, it goes on: what DIR has is not played again.
+    The same command resumes an interrupted study: runs that DIR has are not played again.
+
+    Example: kswarms run fig-6.1a fig-6.1c --densities 6,30,50 --seeds 5
     """
     ids = ids or []
     if bool(ids) == everything:
@@ -79,18 +77,17 @@ def run(
         chosen(ids or CATALOGUE), integers("densities", densities), seeds, suitable_only=everything
     )
     check_seed("first_seed", first_seed)
-    workers = processes(jobs)
+    workers = count_workers(jobs)
     records = words(record)
     for name in records:
         if name not in RECORDED_TABLES:
             raise InputError("record", name, f"must be among {', '.join(RECORDED_TABLES)}")
-    kind = "none" if quiet else check_kind(progress)
+    check_kind(progress)
     if left_out:
-        typer.echo(f"kswarms: none of the densities suits {', '.join(left_out)}: left out", err=True)
+        _warn(f"none of the densities suits {', '.join(left_out)}: left out")
 
-    tables, failed = _play(
-        scenarios, first_seed, workers, scheduler, records, out, kind, shlex.join(context.obj)
-    )
+    kind, command = "none" if quiet else progress, shlex.join(context.obj)
+    tables, failed = _play(scenarios, first_seed, workers, scheduler, records, out, kind, command)
     lines = [f"table:  {table}" for table in tables]
     if tables and not no_figures:
         from kswarms.analysis.figures.over_n import draw
@@ -103,22 +100,25 @@ def run(
         for table_id in dict.fromkeys(ids):
             if table_id in TABLES and tables:
                 _print_table(table_id, out)
-        then = "status" if failed else "report"
-        typer.echo(f"next:   kswarms {then} {shlex.quote(str(out))}  ({_NEXT[then]})")
+        directory = shlex.quote(str(out))
+        if failed:
+            typer.echo(f"next:   kswarms status {directory}  (what failed, and how to see it fail again)")
+        else:
+            typer.echo(f"next:   kswarms report {directory}  (all results in one HTML file)")
     return 1 if failed else 0
 
 
 def _play(
     scenarios: Sequence[Scenario],
     first_seed: int,
-    jobs: int,
+    workers: int,
     scheduler: str | None,
     records: Sequence[str],
     out: Path,
     progress: str,
     command: str,
 ) -> tuple[list[Path], int]:
-    """Play what is not played yet; return the tables written and how many runs failed."""
+    """Play the missing runs of a study; return the tables written and the number of failed runs."""
     from kswarms.scenarios.study.study import Study
 
     failed = 0
@@ -127,27 +127,25 @@ def _play(
         if scheduler is not None:
             from kswarms.scenarios.runs.dask import dask_executor
 
-            executor, jobs = stack.enter_context(dask_executor(scheduler))
+            executor, workers = stack.enter_context(dask_executor(scheduler))
         study = stack.enter_context(Study(out, command))
         runs = study.plan(scenarios, first_seed, records)
         for code in study.other_code:
-            typer.echo(
-                f"kswarms: {out} keeps runs of other code, {code}; to play them anew, name another --out",
-                err=True,
-            )
+            _warn(f"{out} keeps runs of other code, {code}; name another --out to play them again")
         try:
-            with closing(study.play(runs, jobs, records, executor)) as played:
-                for count in told(played, runs, progress):
+            with closing(study.play(runs, workers, records, executor)) as played:
+                for count in show_progress(played, runs, progress):
                     failed = count.failed
         except KeyboardInterrupt:
-            typer.echo(f"kswarms: {out} keeps what was played; the same command goes on", err=True)
+            _warn(f"{out} keeps the finished runs; the same command resumes")
             raise
     if failed:
-        typer.echo(
-            f"kswarms: {failed} of {len(runs)} runs failed; see `kswarms status {shlex.quote(str(out))}`",
-            err=True,
-        )
+        _warn(f"{failed} of {len(runs)} runs failed; see `kswarms status {shlex.quote(str(out))}`")
     return study.tables, failed
+
+
+def _warn(message: str) -> None:
+    typer.echo(f"kswarms: {message}", err=True)
 
 
 def _print_table(table_id: str, out: Path) -> None:

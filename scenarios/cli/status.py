@@ -1,22 +1,24 @@
-"""``status`` and ``replay``: what a directory of results holds, and one of its runs again."""
+"""``status`` and ``replay``: the state of a results directory, and one of its runs played again."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from kswarms.scenarios.cli.printing import print_columns
-from kswarms.scenarios.cli.progress import clock
+from kswarms.scenarios.cli.printing import format_duration, print_columns
+from kswarms.scenarios.study.database import FILE
+from kswarms.scenarios.study.ledger import Ledger
+from kswarms.scenarios.study.summary import by_scenario, codes, failures, in_all
 
-Directory = Annotated[Path, typer.Argument(metavar="DIR", help="What `kswarms run --out` wrote.")]
+Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Results directory of `kswarms run`.")]
 
 
 def status(directory: Directory) -> None:
-    """Tell what is done, what failed and why, what is missing, and what it took."""
-    from kswarms.scenarios.study.database import FILE
-    from kswarms.scenarios.study.ledger import Ledger
+    """Show finished, failed and missing runs, why runs failed, and the CPU time.
+
+    Example: kswarms status results
+    """
     from kswarms.scenarios.study.study import holder, replay_command
-    from kswarms.scenarios.study.summary import by_scenario, codes, failures, in_all
 
     with Ledger(directory / FILE) as ledger:
         heads = ("scenario", "done", "failed", "missing", "CPU time")
@@ -41,12 +43,13 @@ def status(directory: Directory) -> None:
 
 def replay(
     directory: Directory,
-    wanted: Annotated[str, typer.Argument(metavar="RUN", help="A run of its tables: the column `run`.")],
+    wanted: Annotated[str, typer.Argument(metavar="RUN", help="Digest of a run: column `run` of a table.")],
 ) -> int:
-    """Play one run again, print what comes out of it, and tell whether DIR has the same. Write nothing."""
+    """Play one run again, print its results and compare them with DIR. Nothing is written.
+
+    Example: kswarms replay results 0c2b1f7a9d3e4f56
+    """
     from kswarms.scenarios.runs.play import play
-    from kswarms.scenarios.study.database import FILE
-    from kswarms.scenarios.study.ledger import Ledger
 
     with Ledger(directory / FILE) as ledger:
         run = ledger.run(wanted)
@@ -67,11 +70,11 @@ def replay(
 
 def _cells(counts: dict[str, tuple[int, float]]) -> tuple[str, ...]:
     numbers = (str(counts.get(status, (0, 0.0))[0]) for status in ("done", "failed", "missing"))
-    return (*numbers, clock(sum(seconds for _, seconds in counts.values())))
+    return (*numbers, format_duration(sum(seconds for _, seconds in counts.values())))
 
 
 def _last_call(trace: str) -> list[str]:
-    """Return where a traceback ends: the file and line, and what stands there."""
+    """Return the last file, line and statement of a traceback."""
     lines = trace.splitlines()
     calls = [k for k, line in enumerate(lines) if line.startswith("  File ")]
     return [line.strip() for line in lines[calls[-1] : calls[-1] + 2]] if calls else []

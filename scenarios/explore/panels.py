@@ -8,7 +8,7 @@ import solara
 
 from kswarms.scenarios.explore.session import Act, Session
 from kswarms.scenarios.explore.views import Json, curves_of
-from kswarms.scenarios.watch.conflicts import TOLD, Arm, ConflictAccount, number, told
+from kswarms.scenarios.watch.conflicts import HEADINGS, Arm, WatchedConflict, conflict_cells, format_number
 from kswarms.scenarios.watch.robot_view import RobotView
 
 _CONFLICTS_SHOWN: Final = 60
@@ -60,7 +60,7 @@ def _chooser(session: Session, act: Act) -> None:
 def _Robot(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     beat.get()
     _chooser(session, act)
-    view = session.player.look_into(session.chosen)
+    view = session.player.view_robot(session.chosen)
     if view is None:
         solara.Text(f"Robot {session.chosen} is absent.")
         return
@@ -97,7 +97,8 @@ def _facts(view: RobotView) -> list[list[str]]:
 
 
 def _arm_row(arm: Arm) -> list[str]:
-    return [arm.action, f"{arm.n:g}", number(arm.q), number(arm.bound - arm.q), number(arm.bound)]
+    numbers = (arm.q, arm.bound - arm.q, arm.bound)
+    return [arm.action, f"{arm.n:g}", *map(format_number, numbers)]
 
 
 @solara.component
@@ -107,11 +108,11 @@ def _Conflicts(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     _chooser(session, act)
     solara.Checkbox(label="Those of all robots", value=everyone)
     player = session.player
-    accounts = player.conflicts_of(None if everyone.value else session.chosen, _CONFLICTS_SHOWN)
-    if not accounts:
+    conflicts = player.latest_conflicts(None if everyone.value else session.chosen, _CONFLICTS_SHOWN)
+    if not conflicts:
         solara.Text("No conflict has ended yet.")
         return
-    _Table(header=_HEADER, rows=[_conflict_row(account, player.begin) for account in accounts])
+    _Table(header=_HEADER, rows=[_conflict_row(each, player.begin) for each in conflicts])
 
 
 _HEADER: Final = (
@@ -120,9 +121,9 @@ _HEADER: Final = (
 )
 
 
-def _conflict_row(account: ConflictAccount, begin: float) -> list[str]:
-    """Return the cells of `told`, in lines so short that what matters most fits beside the arena."""
-    cell = dict(zip(TOLD, told(account, begin), strict=True))
+def _conflict_row(conflict: WatchedConflict, begin: float) -> list[str]:
+    """Return the cells of `conflict_cells` in short lines, so that the table fits beside the arena."""
+    cell = dict(zip(HEADINGS, conflict_cells(conflict, begin), strict=True))
     return [
         cell["t (s)"],
         f"{cell['who']} →\n{cell['met']}",

@@ -28,21 +28,21 @@ def scene_of(player: Player) -> Json:
 
 def frame_of(player: Player, number: int, chosen: int, sectors: bool, sensors: bool) -> Json:
     """Return what changes: positions to 0.1 mm, headings to 0.001 rad."""
-    picture = player.picture()
-    view = player.look_into(chosen)
+    now = player.snapshot()
+    view = player.view_robot(chosen)
     return {
         "number": number,
-        "time": round(picture.time, 3),
+        "time": round(now.time, 3),
         "ended": player.ended,
-        "pucks": picture.pucks,
+        "pucks": now.pucks,
         "supply": player.model.supply,
-        "robots": picture.robots,
-        "swarm": picture.swarm.tolist(),
-        "x": picture.positions[:, 0].round(4).tolist(),
-        "y": picture.positions[:, 1].round(4).tolist(),
-        "heading": picture.heading.round(3).tolist(),
-        "action": picture.in_action.astype(int).tolist(),
-        "puck": picture.carrying.astype(int).tolist(),
+        "robots": now.robots,
+        "swarm": now.swarm.tolist(),
+        "x": now.positions[:, 0].round(4).tolist(),
+        "y": now.positions[:, 1].round(4).tolist(),
+        "heading": now.heading.round(3).tolist(),
+        "action": now.in_action.astype(int).tolist(),
+        "puck": now.carrying.astype(int).tolist(),
         "chosen": chosen,
         "sectors": sectors,
         "sensors": [list(sensor) for sensor in view.sensors] if view and sensors else None,

@@ -1,1 +1,1 @@
-"""Watching a game: playing it stepwise, looking into a robot, telling its conflicts."""
+"""Watching a game: step by step, robot by robot, conflict by conflict."""

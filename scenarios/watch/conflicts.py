@@ -1,37 +1,33 @@
-"""Replay: the conflicts of a run, told one by one.
+"""The conflicts of a run, with what each robot knew when its conflict began.
 
-A run is a game and a seed, and a game with a seed has one course only, so nothing has to be recorded to see
-it again: it is played again.
+A game with a seed is deterministic, so a run is played again instead of being recorded.
 """
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from kswarms.agents.learning.bandit import Bandit
 from kswarms.agents.learning.selection_rules import FORGOTTEN, UCB
 from kswarms.agents.policies.learner import Learner
+from kswarms.model.game_model import GameModel
 from kswarms.scenarios.runs.play import finished_game
 from kswarms.scenarios.runs.run import Run
 
-if TYPE_CHECKING:
-    from kswarms.model.game_model import GameModel
-
 
 class Arm(NamedTuple):
-    """What a robot knows of an action against a swarm.
+    """What a robot knows about an action against a swarm.
 
     Attributes
     ----------
     action : str
         Name of the action.
     n : float
-        N(a), discounted where the rule discounts.
+        N(a), discounted if the rule discounts.
     q : float
-        Q(a) (Eq. 4.15), NaN if it was never tried.
+        Q(a) (Eq. 4.15), NaN if the action was never tried.
     bound : float
-        Q(a) and what UCB adds for exploration (Eq. 4.16); NaN if the rule is none of UCB's, or an arm of the
-        bandit was never tried.
+        Upper confidence bound of Q(a) (Eq. 4.16); NaN if the rule is not UCB or an arm was never tried.
     """
 
     action: str
@@ -40,23 +36,23 @@ class Arm(NamedTuple):
     bound: float
 
 
-class ConflictAccount(NamedTuple):
-    """A conflict, and what its robot knew when it began.
+class WatchedConflict(NamedTuple):
+    """A conflict and what its robot knew when it began.
 
     Attributes
     ----------
     row : dict of str to object
         The columns of ``conflicts.parquet`` without `run` (`kswarms.agents.common.columns`).
     known : tuple of Arm
-        What the robot knew of its actions against that swarm; empty if it does not learn about it.
+        What the robot knew about its actions against that swarm; empty if it does not learn about it.
     """
 
     row: dict[str, Any]
     known: tuple[Arm, ...]
 
 
-def arms_known(learner: Learner, bandit: Bandit) -> tuple[Arm, ...]:
-    """Return what a bandit of a learner knows of each action."""
+def arms_of(learner: Learner, bandit: Bandit) -> tuple[Arm, ...]:
+    """Return what a bandit of a learner knows about each action."""
     rule = learner.rule
     bounds = [math.nan] * len(bandit.count)
     if isinstance(rule, UCB) and min(bandit.count) >= FORGOTTEN:
@@ -67,11 +63,11 @@ def arms_known(learner: Learner, bandit: Bandit) -> tuple[Arm, ...]:
     )
 
 
-class Accounts:
-    """The conflicts of a game as they are recorded, each with what was known when it began.
+class ConflictReader:
+    """Reads the recorded conflicts of a game and adds what each robot knew.
 
-    A robot closes its last conflict, learns from it, and only then chooses; so what it knew is what the
-    rewards recorded before amount to.
+    A robot reports its last conflict, learns from it, and only then chooses again. So its knowledge follows
+    from the rewards recorded before.
 
     Parameters
     ----------
@@ -79,7 +75,7 @@ class Accounts:
         A game that records conflicts.
     """
 
-    def __init__(self, model: "GameModel") -> None:
+    def __init__(self, model: GameModel) -> None:
         self._table = model.datacollector.tables["conflicts"]
         self._learners = {
             robot.number: robot.policy for robot in model.robots if isinstance(robot.policy, Learner)
@@ -90,35 +86,30 @@ class Accounts:
             for opponent in learner.bandits
         }
 
-    def take(self) -> Iterator[ConflictAccount]:
-        """Take the conflicts out of the recorded table and yield them, in the order in which they closed."""
+    def read(self) -> Iterator[WatchedConflict]:
+        """Yield the new conflicts in the order in which they ended, and remove them from the table."""
         names = list(self._table)
         columns = [self._table[name].copy() for name in names]
         for column in self._table.values():
-            column.clear()  # a long game would fill the memory
+            column.clear()  # saves memory in long games
         for values in zip(*columns, strict=True):
-            yield self._account(dict(zip(names, values, strict=True)))
+            yield self._add_knowledge(dict(zip(names, values, strict=True)))
 
-    def _account(self, row: dict[str, Any]) -> ConflictAccount:
+    def _add_knowledge(self, row: dict[str, Any]) -> WatchedConflict:
         robot = row["robot"]
         bandit = self._bandits.get((robot, row["opponent_swarm"] - 1))
         known: tuple[Arm, ...] = ()
         if bandit is not None:
             learner = self._learners[robot]
-            known = arms_known(learner, bandit)
+            known = arms_of(learner, bandit)
             if not math.isnan(row["reward"]):
                 arm = [action.name for action in learner.actions].index(row["action"])
                 bandit.update(arm, row["reward"], row["t_a"] + row["t_p"], learner.rule.factor)
-        return ConflictAccount(row, known)
+        return WatchedConflict(row, known)
 
 
-def conflicts_of(run: Run) -> list[ConflictAccount]:
-    """Play a run again and return its conflicts, those of learning included, by their start.
-
-    Parameters
-    ----------
-    run : Run
-        What is played.
+def conflicts_of(run: Run) -> list[WatchedConflict]:
+    """Play a run and return its conflicts, learning included, sorted by start.
 
     Raises
     ------
@@ -126,11 +117,11 @@ def conflicts_of(run: Run) -> list[ConflictAccount]:
         If the game fails.
     """
     with finished_game(run, "conflicts") as model:
-        accounts = Accounts(model).take()
-        return sorted(accounts, key=lambda account: (account.row["start"], account.row["robot"]))
+        found = ConflictReader(model).read()
+        return sorted(found, key=lambda conflict: (conflict.row["start"], conflict.row["robot"]))
 
 
-TOLD: Final = (
+HEADINGS: Final = (
     "t (s)",
     "who",
     "met",
@@ -144,36 +135,36 @@ TOLD: Final = (
     "R",
     "Q after",
 )
-"""Headings of what `told` returns; times in seconds."""
+"""Headings of the cells of `conflict_cells`; times in seconds."""
 
 
-def told(account: ConflictAccount, begin: float) -> list[str]:
+def conflict_cells(conflict: WatchedConflict, begin: float) -> list[str]:
     """Return a conflict as the cells of a table.
 
     Parameters
     ----------
-    account : ConflictAccount
+    conflict : WatchedConflict
         The conflict.
     begin : float
-        When the measured game began, from which its time is counted (s).
+        Start of the measured game (s), the zero of the printed times.
     """
-    row, x, y = account.row, account.row["x"], account.row["y"]
+    row, x, y = conflict.row, conflict.row["x"], conflict.row["y"]
     return [
         f"{row['start'] - begin:.1f}",
         f"{row['robot']} of S{row['swarm']}",
         f"{row['opponent']} of S{row['opponent_swarm']}",
         f"{x:z.2f}, {y:z.2f}",  # z: no −0.00
-        ", ".join(f"{arm.action} {number(arm.q)} ({arm.n:.4g})" for arm in account.known) or "–",
+        ", ".join(f"{arm.action} {format_number(arm.q)} ({arm.n:.4g})" for arm in conflict.known) or "–",
         row["action"],
         f"{row['t_a']:.1f}",
         f"{row['t_p']:.1f}",
         str(row["active"]),
         ", ".join(f"{len(own)} of S{k}" for k, own in enumerate(row["seen"], 1) if own),
-        number(row["reward"]),
-        number(row["q"]),
+        format_number(row["reward"]),
+        format_number(row["q"]),
     ]
 
 
-def number(value: float) -> str:
-    """Return a number with three decimals, a dash for none."""
+def format_number(value: float) -> str:
+    """Return a number with three decimals, a dash for NaN."""
     return "–" if math.isnan(value) else f"{value:z.3f}"

@@ -1,12 +1,12 @@
-"""A game that can be stopped, stepped, wound back and looked into: what the page and the film play.
+"""A game that can be paused, stepped, rewound and inspected, for the page and for films.
 
-A step is one control period. Winding back plays the game again from its beginning, which takes less time
-than it would to keep what was.
+A step is one control period. Rewinding plays the game again from its beginning, which takes less time than
+storing its states.
 """
 
 from collections import deque
 from collections.abc import Sequence
-from itertools import groupby
+from itertools import groupby, islice
 from threading import RLock
 from typing import Any, Final, NamedTuple
 
@@ -18,34 +18,34 @@ from kswarms.agents.theory.swarms import swarm_utility_difference
 from kswarms.model.description.game import Game
 from kswarms.model.game_model import GameModel
 from kswarms.model.recorder import policy_rows
-from kswarms.scenarios.watch.conflicts import Accounts, ConflictAccount
-from kswarms.scenarios.watch.robot_view import RobotView, look_into, row_of
+from kswarms.scenarios.watch.conflicts import ConflictReader, WatchedConflict
+from kswarms.scenarios.watch.robot_view import RobotView, row_of, view_robot
 
 MOST_SAMPLES: Final = 400
-"""A history of more samples is thinned to half of them."""
+"""Maximum length of the history; a longer one is thinned to every second sample."""
 MOST_CONFLICTS: Final = 5000
-"""Conflicts that are kept; all of a run are in `kswarms.scenarios.watch.conflicts.conflicts_of`."""
+"""Number of latest conflicts kept; `kswarms.scenarios.watch.conflicts.conflicts_of` returns all of a run."""
 FIRST_INTERVAL: Final = 2.0
-"""Between two samples of the history, until it is thinned (s)."""
+"""Initial interval of the samples of the history (s)."""
 
 
-class Picture(NamedTuple):
-    """What is seen of a game at an instant.
+class Snapshot(NamedTuple):
+    """State of a game at an instant.
 
     Attributes
     ----------
     time : float
-        Since the measured game began; negative while the learners learn (s).
+        Time of the measured game, negative during learning (s).
     robots : tuple of int, length n
-        Numbers of those who are there, ascending.
+        Numbers of the robots present, ascending.
     positions : ndarray of float64, shape (n, 2)
-        (m)
+        Positions (m).
     heading : ndarray of float64, shape (n,)
-        (rad)
+        Headings (rad).
     swarm : ndarray of int64, shape (n,)
-        Counted from 0.
+        Swarm of each robot, from 0.
     in_action, carrying : ndarray of bool, shape (n,)
-        Whether in state A; whether with a puck.
+        Whether in state A; whether carrying a puck.
     pucks : tuple of int
         Score of each swarm.
     """
@@ -61,19 +61,19 @@ class Picture(NamedTuple):
 
 
 class Sample(NamedTuple):
-    """The curves of a game at an instant, of each swarm.
+    """Measures of each swarm at an instant: a point of each curve.
 
     Attributes
     ----------
     time : float
-        Since the measured game began; negative while the learners learn (s).
+        Time of the measured game, negative during learning (s).
     pucks, sud : tuple of int
         Score; Swarm Utility Difference on pucks (Eq. 3.7).
     intra, inter : tuple of float
-        Shares of the time spent so far in conflicts within the swarm, and with others; the rest is T(p).
+        Shares of the time so far in conflicts within the swarm and with other swarms; the rest is T(p).
     fights : dict of (int, int) to float
-        For each swarm that learns and swarm learned about, both from 1, the share of its robots whose Q is
-        greatest for fight.
+        For each learning swarm and swarm learned about, from 1: the share of robots whose best action is
+        to fight.
     """
 
     time: float
@@ -85,12 +85,12 @@ class Sample(NamedTuple):
 
 
 class Player:
-    """A game being played; every method may be called from any thread.
+    """Plays a game step by step. Its methods are thread-safe.
 
     Parameters
     ----------
     game : Game
-        What is played.
+        The game.
     seed : int
         Seed of the run, ≥ 0.
 
@@ -99,9 +99,9 @@ class Player:
     game : Game
     seed : int
     model : GameModel
-        The game as it stands; another object after `seek` has wound back.
-    conflicts : deque of ConflictAccount
-        The last that have closed, `MOST_CONFLICTS` at most, in the order in which they did.
+        The running game; `seek` replaces it when it rewinds.
+    conflicts : deque of WatchedConflict
+        The latest finished conflicts, at most `MOST_CONFLICTS`, in the order in which they ended.
 
     Raises
     ------
@@ -118,41 +118,41 @@ class Player:
     def _start(self) -> None:
         game = self.game.replace(sample_period=self.game.parameters.period)
         self.model = GameModel(game, seed=self.seed, record="conflicts")
-        self._accounts = Accounts(self.model)
-        self.conflicts: deque[ConflictAccount] = deque(maxlen=MOST_CONFLICTS)
+        self._reader = ConflictReader(self.model)
+        self.conflicts: deque[WatchedConflict] = deque(maxlen=MOST_CONFLICTS)
         self._interval = self.model.habits.periods(FIRST_INTERVAL)
         self._steps = 0
         self._history = [self._sample()]
 
     def close(self) -> None:
-        """Let the game go."""
+        """Release the game."""
         with self._lock:
             self.model.forget()
 
-    # Where it stands.
+    # State.
 
     @property
     def time(self) -> float:
-        """Since the measured game began; negative while the learners learn (s)."""
+        """Time of the measured game, negative during learning (s)."""
         return self.model.time - self.begin if not self.ended else self.model.duration
 
     @property
     def begin(self) -> float:
-        """When the measured game begins (s since the very beginning)."""
+        """Length of the learning phase, after which the measured game begins (s)."""
         habits = self.model.habits
         return habits.seconds(habits.periods(self.game.learning)) if self.game.learning > 0 else 0.0
 
     @property
     def ended(self) -> str:
-        """Why the game is over, empty while it is not."""
+        """Reason for the end of the game, empty while it runs."""
         return self.model.ended
 
-    def picture(self) -> Picture:
-        """Return what is seen now."""
+    def snapshot(self) -> Snapshot:
+        """Return the current state."""
         with self._lock:
             fleet = self.model.fleet
             robots = fleet.robots
-            return Picture(
+            return Snapshot(
                 self.time,
                 tuple(robot.number for robot in self.model.robots),
                 fleet.positions.copy(),
@@ -165,35 +165,34 @@ class Player:
 
     @property
     def history(self) -> list[Sample]:
-        """The curves so far; playing on does not change what is given."""
+        """Copy of the samples so far."""
         with self._lock:
             return self._history.copy()
 
-    def look_into(self, robot: int) -> RobotView | None:
-        """Return what can be seen of a robot now, by its number; None if it is absent."""
+    def view_robot(self, robot: int) -> RobotView | None:
+        """Return the current state of a robot, by its number; None if it is absent."""
         with self._lock:
-            return look_into(self.model, robot)
+            return view_robot(self.model, robot)
 
-    # Moving on and back.
+    # Playing.
 
     def advance(self, seconds: float) -> None:
-        """Play on for a time, rounded to whole periods and at least one, or to the end."""
+        """Play for a time, rounded to at least one control period, or to the end of the game."""
         with self._lock:
             self._play_to(self._steps + max(1, round(seconds / self.game.parameters.period)))
 
     def seek(self, time: float) -> None:
-        """Go to an instant, back or on, or to the end if that comes before.
+        """Go to an instant, forwards or backwards; stop at the end of the game.
 
         Parameters
         ----------
         time : float
-            Since the measured game began; negative for an instant of the learning (s).
+            Time of the measured game, negative during learning (s).
 
         Raises
         ------
         InputError
-            If it winds back and the game cannot be played any more, as files that it needs have changed; then
-            it stands where it was.
+            If the game cannot be rewound because files that it needs have changed; its state is kept.
         """
         with self._lock:
             target = round((time + self.begin) / self.game.parameters.period)
@@ -204,26 +203,21 @@ class Player:
             self._play_to(target)
 
     def to_next_conflict(self, robot: int) -> None:
-        """Play on until a robot begins a conflict, or leaves, or to the end."""
+        """Play until a robot begins a conflict, leaves, or the game ends."""
         with self._lock:
             begun = self._begun(robot)
             while begun is not None and not self.ended:
                 self._play_to(self._steps + 1)
-                # Fewer than before where the measured game began meanwhile, which counts anew.
+                # The count restarts, and may drop, at the start of the measured game.
                 before, begun = begun, self._begun(robot)
                 if begun is not None and begun > before:
                     break
 
-    def conflicts_of(self, robot: int | None, most: int) -> list[ConflictAccount]:
-        """Return the last conflicts, at most so many, of a robot or (None) of all; the newest first."""
-        found: list[ConflictAccount] = []
+    def latest_conflicts(self, robot: int | None, most: int) -> list[WatchedConflict]:
+        """Return the latest conflicts of a robot, or of all robots (None), newest first, at most `most`."""
         with self._lock:
-            for account in reversed(self.conflicts):
-                if len(found) == most:
-                    break
-                if robot is None or account.row["robot"] == robot:
-                    found.append(account)
-        return found
+            found = (each for each in reversed(self.conflicts) if robot in (None, each.row["robot"]))
+            return list(islice(found, most))
 
     def _begun(self, robot: int) -> int | None:
         row = row_of(self.model, robot)
@@ -234,12 +228,11 @@ class Player:
             self.model.step()
             self._steps += 1
             if self._steps % self._interval == 0 or self.ended:
-                self._keep()
-        self.conflicts.extend(self._accounts.take())
+                self._add_sample()
+        self.conflicts.extend(self._reader.read())
 
-    def _keep(self) -> None:
-        """Take a sample, and the conflicts since the last."""
-        self.conflicts.extend(self._accounts.take())
+    def _add_sample(self) -> None:
+        self.conflicts.extend(self._reader.read())
         self._history.append(self._sample())
         if len(self._history) > MOST_SAMPLES:
             self._interval *= 2
@@ -259,7 +252,7 @@ class Player:
 
 
 def _shares(t_a: Sequence[int], t_p: int, swarm: int) -> tuple[float, float]:
-    """Return the shares of time in conflict within the swarm and with others, 0 at the very start."""
+    """Return the shares of time in conflicts within the swarm and with others, 0 at the start."""
     lived = sum(t_a) + t_p
     return (t_a[swarm] / lived, (sum(t_a) - t_a[swarm]) / lived) if lived else (0.0, 0.0)
 

@@ -1,4 +1,4 @@
-"""A robot looked into: what it senses, what it is doing, what it has learned."""
+"""State of one robot for display: its sensors, its activity and its knowledge."""
 
 import math
 from bisect import bisect_left
@@ -12,7 +12,7 @@ from kswarms.agents.robot.body import SENSORS
 from kswarms.agents.robot.sensing import sense
 from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, IDLE, LEG, LEG_OVER, TURN
 from kswarms.model.game_model import GameModel
-from kswarms.scenarios.watch.conflicts import Arm, arms_known
+from kswarms.scenarios.watch.conflicts import Arm, arms_of
 
 _DOING: Final = {
     IDLE: "decides",
@@ -31,9 +31,9 @@ class Sensor(NamedTuple):
     Attributes
     ----------
     angle : float
-        Of its middle from the heading (rad).
+        Direction of its centre relative to the heading (rad).
     free : float
-        Distance from the robot's surface to the nearest thing in its sector, at most the sensor's range (m).
+        Distance from the robot's surface to the nearest obstacle in its sector, at most its range (m).
     active : bool
         Whether it counts in n'_i (Eq. 5.4).
     """
@@ -44,35 +44,36 @@ class Sensor(NamedTuple):
 
 
 class RobotView(NamedTuple):
-    """What can be seen of a robot.
+    """State of a robot.
 
     Attributes
     ----------
     robot, swarm : int
         Number from 0; swarm-ID from 1.
     policy : str
-        As it was asked for.
+        As the game describes it.
     doing : str
-        In words.
+        Current activity in words.
     opponent : str
-        The robot met last, empty before the first conflict, and if that robot has left.
+        The robot met last; empty before the first conflict, and if that robot has left.
     carrying : bool
+        Whether it carries a puck.
     pucks : int
-        Deposited in this phase.
+        Pucks deposited in this phase.
     t_a : tuple of float
-        T(a), by the opponent's swarm (s).
+        T(a) for each opposing swarm (s).
     t_p : float
         T(p) (s).
     conflicts : tuple of int
-        Begun, by the opponent's swarm.
+        Conflicts begun, for each opposing swarm.
     sensors : tuple of Sensor
-        The one ahead first, then counter-clockwise.
+        Counter-clockwise from the one ahead.
     learning : bool
-        Whether it still learns.
+        Whether it is still learning.
     rule : str
-        How it chooses while it learns; empty if it never does.
+        Its selection rule; empty if it does not learn.
     bandits : dict of int to tuple of Arm
-        For each swarm learned about, from 1, what it knows of its actions.
+        What it knows about its actions against each swarm learned about, from 1.
     """
 
     robot: int
@@ -92,13 +93,13 @@ class RobotView(NamedTuple):
 
 
 def row_of(model: GameModel, number: int) -> int | None:
-    """Return the row of a robot, by its number; None if it is absent."""
+    """Return the row of a robot in the state arrays, by its number; None if it is absent."""
     row = bisect_left(model.robots, number, key=attrgetter("number"))
     return row if row < len(model.robots) and model.robots[row].number == number else None
 
 
-def look_into(model: GameModel, number: int) -> RobotView | None:
-    """Return what can be seen of a robot now, by its number; None if it is absent."""
+def view_robot(model: GameModel, number: int) -> RobotView | None:
+    """Return the current state of a robot, by its number; None if it is absent."""
     index = row_of(model, number)
     if index is None:
         return None
@@ -118,14 +119,14 @@ def look_into(model: GameModel, number: int) -> RobotView | None:
         tuple(seconds(periods) for periods in t_a),
         seconds(t_p),
         tuple(robot.conflicts),
-        _sensors(model, index),
+        _read_sensors(model, index),
         learner is not None and learner.learning,
         repr(learner.rule) if learner else "",
-        {m + 1: arms_known(learner, bandit) for m, bandit in learner.bandits.items()} if learner else {},
+        {m + 1: arms_of(learner, bandit) for m, bandit in learner.bandits.items()} if learner else {},
     )
 
 
-def _sensors(model: GameModel, index: int) -> tuple[Sensor, ...]:
+def _read_sensors(model: GameModel, index: int) -> tuple[Sensor, ...]:
     body, parameters = model.game.body, model.game.parameters
     reach = body.sensor_range
     row = model.fleet.robots[index]

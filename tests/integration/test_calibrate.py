@@ -84,7 +84,7 @@ def test_calibrate_plays_says_what_it_found_and_does_not_play_again(
     assert all(0 <= error <= 100 for generation in trace["generations"] for error in generation["errors"])
     assert "generation 2 of 2: errors" in printed.err
 
-    monkeypatch.setattr("kswarms.scenarios.cli.calibrate.play_all", None)  # to be called would be an error
+    monkeypatch.setattr("kswarms.scenarios.runs.sweep.play_all", None)  # to be called would be an error
     assert invoke(TINY) == 0
     assert capsys.readouterr().out == printed.out
 

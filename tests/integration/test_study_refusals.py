@@ -159,7 +159,7 @@ def test_runs_of_other_code_are_told_of(
         assert capsys.readouterr().err == ""
     assert invoke(RUN) == 0
     assert capsys.readouterr().err == (
-        "kswarms: results keeps runs of other code, 0.1.0 before; to play them anew, name another --out\n"
+        "kswarms: results keeps runs of other code, 0.1.0 before; name another --out to play them again\n"
     )
     assert invoke(["status", "results"]) == 0
     assert "played by: kswarms 0.1.0 before, 4 runs" in capsys.readouterr().out

@@ -24,7 +24,7 @@ from tests.helpers.tiny_study import RUN, TINY, Fault, contents, sessions, undis
 
 pytestmark = pytest.mark.usefixtures("with_a_file_of_scenarios")
 
-INTERRUPTED = ["kswarms: results keeps what was played; the same command goes on", "kswarms: interrupted"]
+INTERRUPTED = ["kswarms: results keeps the finished runs; the same command resumes", "kswarms: interrupted"]
 NOBODY = 99_999_999
 """Number that no process has."""
 KSWARMS = [sys.executable, "-m", "kswarms.scenarios.cli"]

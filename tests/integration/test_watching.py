@@ -11,10 +11,10 @@ from PIL import Image
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.cli import invoke
-from kswarms.scenarios.contribution.games import SCHEMA
+from kswarms.scenarios.contribution.table import SCHEMA
 from kswarms.scenarios.runs.run import digest
 from kswarms.scenarios.study.ledger import find_run
-from kswarms.scenarios.watch.conflicts import TOLD, conflicts_of
+from kswarms.scenarios.watch.conflicts import HEADINGS, conflicts_of
 from kswarms.scenarios.watch.recorded_run import recorded_run
 
 
@@ -70,7 +70,7 @@ def test_a_recorded_run_is_filmed_and_told_again(capsys: pytest.CaptureFixture[s
     assert _film(f"--run {name} results --to 1 --size 64 --out a.gif") == 0
     assert invoke(["conflicts", "--run", name, "results", "--robot", "2", "--to", "300"]) == 0
     header, *lines = capsys.readouterr().out.splitlines()[1:]
-    assert header.split("  ")[0] == TOLD[0]
+    assert header.split("  ")[0] == HEADINGS[0]
     run = find_run(Path("results"), name)
     assert run.seed == 3
     expected = [
@@ -185,13 +185,13 @@ def test_a_run_that_was_compared_may_be_of_a_scenario_that_is_not_at_hand() -> N
         ("film fig-6.1c --sheet 0", "sheet=0: must be in 1 to 100"),
         ("film fig-6.1c --out a.avi", "out='a.avi': must end with .mp4 or .gif"),
         ("film fig-6.1c --sheet 2 --out a.gif", "out='a.gif': must end with .png"),
-        ("film fig-6.1c --out nowhere/a.gif", "out='nowhere/a.gif': must be in a directory that is there"),
-        ("film --run 0123", "run='0123': needs the directory of results that has it"),
+        ("film fig-6.1c --out nowhere/a.gif", "out='nowhere/a.gif': must be in a directory that exists"),
+        ("film --run 0123", "run='0123': needs the results directory that has it"),
         ("film --run 0123 nowhere", "results='nowhere': must be a directory"),
         ("film --run 0123 nowhere --n 6", "results='nowhere': must be a directory"),
         ("conflicts fig-6.1c --n 6 --robot 6", "robot=6: must be in 0 to 5"),
         ("explore fig-9", "id='fig-9': must be a scenario"),
-        ("explore --run 0123", "run='0123': needs the directory"),
+        ("explore --run 0123", "run='0123': needs the results directory"),
         ("explore --port 99999", "port=99999: must be a free port of this machine, 0 for any"),
     ],
 )

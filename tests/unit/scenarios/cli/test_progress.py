@@ -7,9 +7,10 @@ import pytest
 
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.cli import progress
-from kswarms.scenarios.cli.progress import Count, clock, told, tracked
-from kswarms.scenarios.runs.outcome import Failure, Outcome, Result
+from kswarms.scenarios.cli.printing import format_duration
+from kswarms.scenarios.cli.progress import Count, show_progress, track
 from kswarms.scenarios.runs.run import Run, expand
+from kswarms.scenarios.runs.sweep import Failure, Outcome, Result
 
 RUNS = sorted(
     expand([CATALOGUE["fig-6.1a"].replace(densities=(6, 30), seeds=2)]),
@@ -47,7 +48,7 @@ def test_lines_are_json_and_the_last_one_tells_all(
             now[0] += 0.6
             yield result
 
-    assert [count.done for count in told(played(), RUNS, "json")] == [1, 2, 3, 4]
+    assert [count.done for count in show_progress(played(), RUNS, "json")] == [1, 2, 3, 4]
     lines = [json.loads(line) for line in capsys.readouterr().err.splitlines()]
     assert [(line["done"], line["failed"], line["total"]) for line in lines] == [
         (1, 0, 4),
@@ -60,7 +61,7 @@ def test_lines_are_json_and_the_last_one_tells_all(
 
 
 def test_a_bar_names_the_scenario_and_counts_failures(capsys: pytest.CaptureFixture[str]) -> None:
-    assert [count.failed for count in told(ended(), RUNS, "bar")][-1] == 1
+    assert [count.failed for count in show_progress(ended(), RUNS, "bar")][-1] == 1
     printed = capsys.readouterr()
     assert printed.out == ""
     assert "\x1b" not in printed.err  # no terminal, no control characters
@@ -70,23 +71,23 @@ def test_a_bar_names_the_scenario_and_counts_failures(capsys: pytest.CaptureFixt
 
 @pytest.mark.parametrize("kind", ["none", "bar", "json"])
 def test_nothing_is_told_of_nothing(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert list(told([], [], kind)) == []
+    assert list(show_progress([], [], kind)) == []
     assert capsys.readouterr().err == ""
 
 
 def test_steps_are_tracked_on_a_terminal_alone(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert list(tracked("abc", "spelling", 3)) == ["a", "b", "c"]
+    assert list(track("abc", "spelling", 3)) == ["a", "b", "c"]
     assert capsys.readouterr() == ("", "")
     monkeypatch.setenv("FORCE_COLOR", "1")  # which rich takes for a terminal
-    assert list(tracked("abc", "spelling", 3)) == ["a", "b", "c"]
+    assert list(track("abc", "spelling", 3)) == ["a", "b", "c"]
     printed = capsys.readouterr()
     assert printed.out == ""
     assert "spelling" in printed.err
 
 
 def test_times_are_told_as_people_say_them() -> None:
-    assert [clock(seconds) for seconds in (0.24, 59.9, 60, 3599.4, 3599.6, 8337)] == [
+    assert [format_duration(seconds) for seconds in (0.24, 59.9, 60, 3599.4, 3599.6, 8337)] == [
         *("0.2 s", "59.9 s", "1:00 min", "59:59 min", "1:00 h", "2:19 h"),
     ]

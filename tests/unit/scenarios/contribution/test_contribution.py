@@ -13,15 +13,8 @@ from kswarms.agents.common.errors import InputError
 from kswarms.agents.learning.rewards import WLU, IndividualUtility
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.game_model import GameModel
-from kswarms.scenarios.contribution.games import (
-    FILE,
-    RECORD,
-    SCHEMA,
-    contributions,
-    prepare_table,
-    robots_of,
-    write_table,
-)
+from kswarms.scenarios.contribution.games import RECORD, contributions, robots_of
+from kswarms.scenarios.contribution.table import FILE, SCHEMA, prepare_table, write_table
 from kswarms.scenarios.runs.run import digest
 from kswarms.scenarios.runs.sweep import play_all
 

@@ -11,7 +11,7 @@ from kswarms.scenarios.explore.views import curves_of, frame_of
 from kswarms.scenarios.runs.run import Run, digest
 from kswarms.scenarios.watch.conflicts import conflicts_of
 from kswarms.scenarios.watch.player import Player
-from kswarms.scenarios.watch.robot_view import look_into
+from kswarms.scenarios.watch.robot_view import view_robot
 
 SWARMS = (Swarm(policy="attack", size=4), Swarm(policy="inter-learner", size=4))
 NEVER = Game(swarms=SWARMS, learning=40.0, duration=30.0, absent=(1, 4))
@@ -24,12 +24,12 @@ def _run(game: Game, seed: int = 0) -> Run:
 
 def test_robots_are_drawn_and_looked_into_by_their_numbers() -> None:
     player = Player(NEVER, 0)
-    picture = player.picture()
+    picture = player.snapshot()
     assert picture.robots == (0, 2, 3, 5, 6, 7)
     assert picture.swarm.tolist() == [0, 0, 0, 1, 1, 1]
-    assert player.look_into(1) is player.look_into(4) is player.look_into(8) is None
+    assert player.view_robot(1) is player.view_robot(4) is player.view_robot(8) is None
     for number, robot in zip(picture.robots, player.model.robots, strict=True):
-        view = player.look_into(number)
+        view = player.view_robot(number)
         assert view is not None
         assert (view.robot, view.swarm, view.policy) == (number, robot.swarm + 1, robot.policy_name)
     frame = frame_of(player, 1, 7, sectors=False, sensors=True)
@@ -46,7 +46,7 @@ def test_who_was_met_last_has_its_number() -> None:
     met = dict(zip(table["robot"], zip(table["opponent"], table["opponent_swarm"], strict=True), strict=True))
     assert any(opponent > 1 for opponent, _ in met.values())  # whose row is another than its number
     for robot, (opponent, swarm) in met.items():
-        view = look_into(model, robot)
+        view = view_robot(model, robot)
         assert view is not None
         assert view.opponent == f"robot {opponent} of S{swarm}"
 
@@ -56,7 +56,7 @@ def test_the_next_conflict_is_that_of_the_number_and_an_absent_robot_has_none() 
     player.to_next_conflict(4)
     assert player.time == -40.0
     player.to_next_conflict(7)
-    assert player.picture().in_action[player.picture().robots.index(7)]
+    assert player.snapshot().in_action[player.snapshot().robots.index(7)]
 
 
 def test_who_leaves_is_watched_until_it_does() -> None:
@@ -64,10 +64,10 @@ def test_who_leaves_is_watched_until_it_does() -> None:
     while player.time < 0:
         player.to_next_conflict(6)
     assert player.time == 0.0
-    assert player.look_into(6) is None
-    assert player.picture().robots == (0, 1, 2, 3)
+    assert player.view_robot(6) is None
+    assert player.snapshot().robots == (0, 1, 2, 3)
     player.seek(-10.0)
-    assert len(player.picture().robots) == 8
+    assert len(player.snapshot().robots) == 8
 
 
 def test_curves_of_those_who_left_end_when_they_do() -> None:

@@ -166,7 +166,7 @@ def test_the_next_conflict_is_that_of_the_chosen_robot(session: Session) -> None
     session.choose(4)
     session.next_conflict()
     assert not session.playing
-    assert session.player.picture().in_action[4]
+    assert session.player.snapshot().in_action[4]
 
 
 def test_a_session_that_is_closed_plays_no_more(session: Session) -> None:
@@ -183,7 +183,7 @@ def test_the_browser_is_given_plain_data(session: Session) -> None:
     assert (frame["number"], frame["time"], frame["pucks"], frame["supply"]) == (3, 0.0, (0, 0), [-1, -1])
     assert (frame["swarm"], frame["robots"]) == ([0] * 10 + [1] * 10, tuple(range(20)))
     assert len(frame["sensors"]) == 8
-    positions = player.picture().positions
+    positions = player.snapshot().positions
     assert frame["x"] == pytest.approx(positions[:, 0], abs=1e-4)
     assert frame_of(player, 3, 5, sectors=True, sensors=False)["sensors"] is None
     charts = curves_of(player.history)

@@ -9,7 +9,13 @@ from kswarms.agents.policies.learner import Learner
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.game_model import GameModel
 from kswarms.scenarios.runs.run import Run, digest
-from kswarms.scenarios.watch.conflicts import Accounts, arms_known, conflicts_of, number, told
+from kswarms.scenarios.watch.conflicts import (
+    ConflictReader,
+    arms_of,
+    conflict_cells,
+    conflicts_of,
+    format_number,
+)
 
 
 def _run(policy: str, seed: int = 0, learning: float = 300.0, absent: tuple[int, ...] = ()) -> Run:
@@ -29,7 +35,7 @@ def test_what_is_known_at_the_end_is_what_the_robots_know(rule: str) -> None:
         assert isinstance(robot.policy, Learner)
         own = [a for a in accounts if a.row["robot"] == robot.number and a.row["opponent_swarm"] == 1]
         last = [a for a in own if a.row["phase"] == "game"]
-        told_then, knows = last[-1].known, arms_known(robot.policy, robot.policy.bandits[0])
+        told_then, knows = last[-1].known, arms_of(robot.policy, robot.policy.bandits[0])
         for then, now in zip(told_then, knows, strict=True):
             assert then.action == now.action
             assert (then.n, then.q, then.bound) == pytest.approx((now.n, now.q, now.bound), nan_ok=True)
@@ -74,17 +80,18 @@ def test_robots_that_do_not_learn_know_nothing() -> None:
 def test_conflicts_are_taken_once_and_leave_the_memory() -> None:
     run = _run("inter-learner", learning=0.0)
     model = GameModel(run.game, seed=0, record="conflicts")
-    accounts = Accounts(model)
+    accounts = ConflictReader(model)
     model.step()
-    first = list(accounts.take())
-    assert list(accounts.take()) == []
+    first = list(accounts.read())
+    assert list(accounts.read()) == []
     assert not any(model.datacollector.tables["conflicts"].values())
     while model.running:
         model.step()
     whole = sorted(
-        [*first, *accounts.take()], key=lambda account: (account.row["start"], account.row["robot"])
+        [*first, *accounts.read()], key=lambda account: (account.row["start"], account.row["robot"])
     )
-    assert [told(account, 0.0) for account in whole] == [told(account, 0.0) for account in conflicts_of(run)]
+    again = [conflict_cells(conflict, 0.0) for conflict in conflicts_of(run)]
+    assert [conflict_cells(conflict, 0.0) for conflict in whole] == again
     assert 0 < len(first) < len(whole)
 
 
@@ -93,9 +100,9 @@ def test_a_conflict_is_told_in_a_line() -> None:
     account = next(
         a for a in conflicts_of(run) if a.known and a.known[0].n > 0 and a.row["phase"] == "learning"
     )
-    cells = told(account, 300.0)
+    cells = conflict_cells(account, 300.0)
     assert cells[0] == f"{account.row['start'] - 300:.1f}"
     assert cells[1] == f"{account.row['robot']} of S2"
     assert cells[4].startswith("flight ")
     assert cells[5] == account.row["action"]
-    assert number(math.nan) == "–"
+    assert format_number(math.nan) == "–"

@@ -13,8 +13,7 @@ from kswarms.model.description.game import Game, Swarm
 from kswarms.model.game_model import GameModel
 from kswarms.scenarios.watch import player as player_module
 from kswarms.scenarios.watch.player import Player
-from kswarms.scenarios.watch.robot_view import RobotView
-from kswarms.scenarios.watch.robot_view import look_into as look
+from kswarms.scenarios.watch.robot_view import RobotView, view_robot
 
 
 def _game(policies: str = "avoid,attack", n: int = 10, **rest: Any) -> Game:
@@ -22,8 +21,8 @@ def _game(policies: str = "avoid,attack", n: int = 10, **rest: Any) -> Game:
     return Game(swarms=swarms, **{"duration": 40.0, **rest})
 
 
-def look_into(model: GameModel, robot: int) -> RobotView:
-    view = look(model, robot)
+def view_of(model: GameModel, robot: int) -> RobotView:
+    view = view_robot(model, robot)
     assert view is not None
     return view
 
@@ -32,7 +31,7 @@ LEARNING = _game("attack,inter-learner", learning=60.0)
 
 
 def _state(player: Player) -> tuple[Any, ...]:
-    return player.time, player.picture().positions.tolist(), player.model.results()
+    return player.time, player.snapshot().positions.tolist(), player.model.results()
 
 
 def test_a_game_watched_step_by_step_is_the_game_played_in_one_go() -> None:
@@ -42,7 +41,7 @@ def test_a_game_watched_step_by_step_is_the_game_played_in_one_go() -> None:
     straight = GameModel(LEARNING, seed=5)
     straight.play()
     assert player.model.results() == straight.results()
-    np.testing.assert_array_equal(player.picture().positions, straight.fleet.positions)
+    np.testing.assert_array_equal(player.snapshot().positions, straight.fleet.positions)
     assert player.time == 40.0
 
 
@@ -62,13 +61,13 @@ def test_winding_back_shows_what_was_there() -> None:
     player = Player(LEARNING, 1)
     player.seek(-20.0)
     before = _state(player)
-    learned = look_into(player.model, 7).bandits
+    learned = view_of(player.model, 7).bandits
     player.seek(15.0)
     assert player.time == 15.0
     assert _state(player) != before
     player.seek(-20.0)
     assert _state(player) == before
-    assert look_into(player.model, 7).bandits == learned
+    assert view_of(player.model, 7).bandits == learned
     assert player.history[0].time == -60.0
 
 
@@ -88,11 +87,11 @@ def test_the_next_conflict_of_a_robot_is_where_it_begins() -> None:
         before = player.time
         player.to_next_conflict(6)
         assert player.time > before
-        assert player.picture().in_action[6] or player.ended
+        assert player.snapshot().in_action[6] or player.ended
     # Its start is told when it has closed: it begins at the instant before this step.
     start = player.time - 0.1
     player.to_next_conflict(6)
-    newest = player.conflicts_of(6, 1)[0]
+    newest = player.latest_conflicts(6, 1)[0]
     assert newest.row["start"] - player.begin == pytest.approx(start)
     player.seek(-0.05)
     player.to_next_conflict(6)  # although the counts begin anew with the measured game
@@ -102,9 +101,9 @@ def test_the_next_conflict_of_a_robot_is_where_it_begins() -> None:
 def test_conflicts_are_told_newest_first_of_one_robot_or_of_all() -> None:
     player = Player(_game(n=16), 0)
     player.seek(40.0)
-    everybody = player.conflicts_of(None, 1000)
+    everybody = player.latest_conflicts(None, 1000)
     assert len(everybody) == len(player.conflicts) > 20
-    own = player.conflicts_of(3, 5)
+    own = player.latest_conflicts(3, 5)
     assert [account.row["start"] for account in own] == sorted((a.row["start"] for a in own), reverse=True)
     assert {account.row["robot"] for account in own} == {3}
     assert own == [account for account in everybody if account.row["robot"] == 3][:5]
@@ -167,7 +166,7 @@ def test_a_robot_is_seen_as_it_is() -> None:
     player.seek(-10.0)
     model = player.model
     for index in range(10):
-        view = look_into(model, index)
+        view = view_of(model, index)
         robot = model.robots[index]
         assert (view.robot, view.swarm, view.pucks) == (index, robot.swarm + 1, robot.pucks)
         assert sum(view.t_a) + view.t_p == pytest.approx(50.0)
@@ -176,17 +175,17 @@ def test_a_robot_is_seen_as_it_is() -> None:
         limit = model.game.parameters.active_range
         assert all(sensor.active == (sensor.free <= limit) for sensor in view.sensors)
         assert all(sensor.free <= model.game.body.sensor_range for sensor in view.sensors)
-    learner, fighter = look_into(model, 7), look_into(model, 0)
+    learner, fighter = view_of(model, 7), view_of(model, 0)
     assert (list(learner.bandits), learner.learning, learner.rule) == ([1], True, "UCB(gamma=0.1211)")
     assert [arm.action for arm in learner.bandits[1]] == ["flight", "fight"]
     assert (fighter.bandits, fighter.learning, fighter.rule) == ({}, False, "")
     player.seek(1.0)
-    assert not look_into(player.model, 7).learning
+    assert not view_of(player.model, 7).learning
 
 
 def test_the_sensor_ahead_measures_the_gap_to_a_robot_ahead(scene: Any) -> None:
     model = scene([(0.0, 0.0, 0.0)], [(0.4, 0.0, 0.0)])
-    view = look_into(model, 0)
+    view = view_of(model, 0)
     assert view.sensors[0].free == pytest.approx(0.4 - 2 * 0.085)
     assert view.sensors[0].active
     assert view.sensors[4].free == pytest.approx(0.667)
