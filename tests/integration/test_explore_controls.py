@@ -102,7 +102,7 @@ def test_the_world_can_be_changed_by_sliders_and_in_words(show: Callable[[str], 
     shown.write("Parameters", "argos")
     shown.find(ipyvuetify.Select, "Body").v_model = "krembot"
     assert "must begin" not in shown.texts()
-    assert session.player.game.body == "krembot"
+    assert session.player.game.body.name == "krembot"
 
 
 def test_a_mistake_is_one_line_on_the_page(show: Callable[[str], Shown]) -> None:
