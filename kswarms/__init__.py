@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     from kswarms.agents.actions import AWAY, TOWARDS, Action
+    from kswarms.agents.body import Body
     from kswarms.agents.common.errors import InputError
     from kswarms.agents.learning.bandit import Bandit
     from kswarms.agents.learning.rewards import Reward
     from kswarms.agents.learning.selection_rules import Rule
     from kswarms.agents.policies.interface import LearningPolicy, Policy, Setting
     from kswarms.agents.policies.learner import Learner
-    from kswarms.agents.policies.registry import make_policy
-    from kswarms.agents.robot.body import Body
+    from kswarms.agents.policies.spec import make_policy
     from kswarms.agents.streams import Purpose
     from kswarms.analysis.figures.files import save
     from kswarms.analysis.figures.over_n import figure_of
@@ -43,8 +43,8 @@ _MODULES: Final = {
     "agents.learning.selection_rules": ("Rule",),
     "agents.policies.interface": ("LearningPolicy", "Policy", "Setting"),
     "agents.policies.learner": ("Learner",),
-    "agents.policies.registry": ("make_policy",),
-    "agents.robot.body": ("Body",),
+    "agents.policies.spec": ("make_policy",),
+    "agents.body": ("Body",),
     "agents.streams": ("Purpose",),
     "analysis.figures.files": ("save",),
     "analysis.figures.over_n": ("figure_of",),

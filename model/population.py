@@ -7,12 +7,11 @@ import numpy as np
 from mesa.experimental.continuous_space import ContinuousSpace
 
 from kswarms.agents.policies.interface import Setting
-from kswarms.agents.policies.registry import deal, make_policy
+from kswarms.agents.policies.spec import deal, parse_policies
 from kswarms.agents.robot.host import World
 from kswarms.agents.robot.krembot import Krembot
 from kswarms.agents.robot.state import Fleet
 from kswarms.agents.streams import Streams
-from kswarms.agents.user_code.loading import is_reference
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game
 from kswarms.model.placement import start_poses
@@ -74,19 +73,21 @@ def make_robots(model: World, game: Game, seed: int) -> list[Krembot]:
         If a policy cannot be made.
     """
     period, top_speed = game.parameters.period, game.body.top_speed
+    actions = game.action_set
     robots: list[Krembot] = []
     for k, swarm in enumerate(game.swarms):
-        for rank, name in enumerate(deal(swarm.policy, swarm.size)):
+        factories = {spec: spec.factory(actions) for spec in parse_policies(swarm.policy)}
+        for rank, spec in enumerate(deal(swarm.policy, swarm.size)):
             index = len(robots)
             streams = Streams(seed, index)
-            policy = make_policy(name, Setting(k, len(game.swarms), game.action_set, streams, rank))
+            policy = factories[spec](Setting(k, len(game.swarms), actions, streams, rank))
             robot = Krembot(
-                *(model, index, k, policy, name, streams),
+                *(model, index, k, policy, str(spec), streams),
                 stride_program=period * top_speed * swarm.drive,
                 stride_action=period * top_speed * swarm.drive_action,
                 swarms=len(game.swarms),
                 # The package's own policies choose what they were given.
-                actions=game.action_set if is_reference(name) else None,
+                actions=actions if spec.is_user_defined else None,
             )
             robots.append(robot)
     return robots

@@ -9,8 +9,7 @@ from mesa import DataCollector
 from kswarms.agents.actions import TOWARDS
 from kswarms.agents.common.columns import RECORDED_TABLES, names
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.policies.registry import describe
-from kswarms.agents.policies.saved import best_actions, save
+from kswarms.agents.policies.saved import best_actions, save, snapshot_of
 from kswarms.agents.robot.conflict import Conflict
 from kswarms.agents.theory.swarms import swarm_utility_difference
 
@@ -112,7 +111,7 @@ def robots_table(model: "GameModel") -> Table:
         "pucks": [robot.pucks for robot in model.robots],
         "t_a": [seconds(sum(t_a)) for t_a, _ in times],
         "t_p": [seconds(t_p) for _, t_p in times],
-        "arms": [describe(robot.policy) for robot in model.robots],
+        "arms": [snapshot_of(robot.policy) for robot in model.robots],
     }
 
 
@@ -162,7 +161,7 @@ def policy_rows(model: "GameModel") -> list[dict[str, Any]]:
     """
     rows = []
     for k, members in enumerate(model.members):
-        of_robots = [best_actions(describe(robot.policy), model.game.action_set) for robot in members]
+        of_robots = [best_actions(snapshot_of(robot.policy), model.game.action_set) for robot in members]
         for opponent in sorted({m for actions in of_robots for m in actions}):
             learned = [actions[opponent] for actions in of_robots if opponent in actions]
             shares = {
@@ -194,7 +193,7 @@ def save_policies(model: "GameModel", swarm: int, path: Path) -> None:
     """
     if not 1 <= swarm <= len(model.members):
         raise InputError("swarm", swarm, f"must be in 1 to {len(model.members)}")
-    learned = [describe(robot.policy) for robot in model.members[swarm - 1]]
+    learned = [snapshot_of(robot.policy) for robot in model.members[swarm - 1]]
     if not all(learned):
         raise InputError("swarm", swarm, "must be a swarm of learners")
     save(path, swarm, learned)

@@ -1,27 +1,29 @@
-"""The one error a user's input can cause."""
+"""The error for invalid input."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Self
 
 from pydantic import ValidationError
 
 
 class InputError(ValueError):
-    """A value from outside is not allowed.
+    """Invalid value of an argument, column or option.
 
     Parameters
     ----------
     field : str
-        Name of the argument, column or option, dotted where it is nested.
+        Name of the argument, column or option; nested names are joined by dots.
     value : object
-        What was given.
+        The invalid value.
     allowed : str
-        What would have been allowed, as the end of the sentence "… must be".
+        The rule that the value breaks, for example ``must be greater than 0``.
     """
 
-    __module__ = "kswarms"  # where users find it, and what tracebacks show
+    __module__ = "kswarms"  # the public name, shown in tracebacks
 
     def __init__(self, field: str, value: object, allowed: str) -> None:
-        # All three go to ``args``, so that the error crosses process boundaries whole.
+        # All three are passed on, so that the error can be pickled.
         super().__init__(field, value, allowed)
         self.field = field
         self.value = value
@@ -31,20 +33,29 @@ class InputError(ValueError):
         return f"{self.field}={self.value!r}: {self.allowed}"
 
     @classmethod
+    @contextmanager
+    def within(cls, field: str) -> Iterator[None]:
+        """Prefix the field of an `InputError` raised in the context with ``field.``."""
+        try:
+            yield
+        except InputError as error:
+            raise cls(f"{field}.{error.field}", error.value, error.allowed) from None
+
+    @classmethod
     def from_validation(cls, error: ValidationError, fields: tuple[str, ...]) -> Self:
-        """Turn the first complaint of pydantic into one line.
+        """Convert the first error of a pydantic validation.
 
         Parameters
         ----------
         error : pydantic.ValidationError
-            What pydantic found.
+            The error.
         fields : tuple of str
-            Names of the fields that exist, to be named when an unknown one was given.
+            Names of the valid fields, listed if an unknown field was given.
         """
         first = error.errors()[0]
         unknown = first["type"] == "extra_forbidden"
-        # Where a field may have several types, pydantic puts the name of the type into the path. A field that
-        # there is not may be called anything.
+        # For a field with several types, pydantic adds the name of the type to the path: drop what is no
+        # identifier or index, except the name of an unknown field.
         *outer, last = first["loc"] or ("",)
         parts = [part for part in outer if str(part).isidentifier() or isinstance(part, int)]
         if unknown or str(last).isidentifier() or isinstance(last, int):

@@ -1,7 +1,7 @@
-"""What every policy, reward and selection rule must do, as checks that a test of a user's own can run.
+"""Checks that every policy, reward and selection rule must pass, for tests of user-defined ones.
 
-Each check takes what builds the thing, and raises an `AssertionError` that says what is wrong. They need no
-test framework; with pytest::
+Each check takes a class or a factory, and raises an `AssertionError` if it fails. The checks need no test
+framework; with pytest::
 
     @pytest.mark.parametrize("check", POLICY_CHECKS)
     def test_my_policy(check):

@@ -1,4 +1,4 @@
-"""What every policy must do."""
+"""Checks of policies."""
 
 import copy
 import pickle
@@ -9,7 +9,10 @@ from typing import Any, Final, cast
 import numpy as np
 
 from kswarms.agents.actions import AWAY, TOWARDS, Action
+from kswarms.agents.conformance.shared import CheckError, require
 from kswarms.agents.policies.interface import LearningPolicy, Policy, Setting
+from kswarms.agents.policies.saved import check_arms, snapshot_of
+from kswarms.agents.policies.spec import Factory
 from kswarms.agents.streams import Purpose, Streams, stream
 
 TWO: Final = (
@@ -21,103 +24,138 @@ FOUR: Final = (
     Action(name="dash", direction=AWAY, duration=0.1),
     Action(name="ram", direction=TOWARDS, duration=3.0),
 )
-GAMES: Final = [
-    (swarm, swarms, actions) for swarms in (2, 3) for swarm in range(swarms) for actions in (TWO, FOUR)
-]
-"""Own swarm, number of swarms, actions."""
-Build = Callable[[Setting], Policy]
-"""A policy's class, or what calls it with arguments: ``functools.partial(MyPolicy, patience=2)``."""
 
 
 def setting(
     swarm: int = 1, swarms: int = 2, actions: tuple[Action, ...] = TWO, seed: int = 0, robot: int = 3
 ) -> Setting:
-    """Return where a robot plays."""
+    """Return the setting of a robot."""
     return Setting(swarm, swarms, actions, Streams(seed, robot))
 
 
-def live(policy: Policy, swarms: int, conflicts: int = 80, learning: bool = True) -> list[tuple[Any, ...]]:
-    """Have conflicts, the same whatever the policy does; return what it chose and what it learned."""
-    world, story = np.random.default_rng(7), []
+def settings() -> list[Setting]:
+    """Return settings in games of two and three swarms, with two and four actions."""
+    return [
+        setting(swarm, swarms, actions)
+        for swarms in (2, 3)
+        for swarm in range(swarms)
+        for actions in (TWO, FOUR)
+    ]
+
+
+def play_conflicts(
+    policy: Policy, where: Setting, conflicts: int = 80, learning: bool = True
+) -> list[tuple[Any, ...]]:
+    """Play conflicts that do not depend on the policy; return its choices and what it learned.
+
+    Raises
+    ------
+    CheckError
+        If a method returns a value that a game cannot use.
+    """
+    draws, story = np.random.default_rng(7), []
     learn = getattr(policy, "learn", None) if learning else None
-    for _ in range(conflicts):
-        opponent, t_a, t_p = int(world.integers(swarms)), world.uniform(1, 3), world.uniform(0, 20)
-        n_active = int(world.integers(9))
-        story.append((opponent, policy.choose(opponent).name))
+    for k in range(conflicts):
+        opponent = k if k < where.swarms else int(draws.integers(where.swarms))
+        t_a, t_p, n_active = draws.uniform(1, 3), draws.uniform(0, 20), int(draws.integers(9))
+        action = policy.choose(opponent)
+        rule = f"choose({opponent}) must return an action of the game, not {action!r}"
+        require(action in where.actions, rule)
+        story.append((opponent, action.name))
         if learn is not None:
-            story.append(learn(t_a, t_p, n_active))
+            told = learn(t_a, t_p, n_active)
+            is_pair = isinstance(told, tuple) and [isinstance(x, float) for x in told] == [True, True]
+            require(is_pair, f"learn(…) must return two floats, R and Q, not {told!r}")
+            story.append(told)
     return story
 
 
-def check_every_choice_is_one_of_the_games_actions(build: Build) -> None:
-    """Check it in games of two and three swarms, and of two and four actions."""
-    for swarm, swarms, actions in GAMES:
-        policy = build(setting(swarm, swarms, actions))
-        for opponent in range(swarms):
-            for _ in range(20):
-                action = policy.choose(opponent)
-                assert action in actions, f"choose({opponent}) is {action!r}, no action of the game"
+def check_snapshot_of(policy: Policy, where: Setting) -> None:
+    """Check that ``snapshot()``, if there is one, describes arms of the game as `Learner.snapshot` does."""
+    arms = snapshot_of(policy)
+    try:
+        check_arms(arms)
+    except (ValueError, KeyError, TypeError) as error:
+        raise CheckError(f"snapshot() must be as that of a Learner ({error})") from None
+    names = [action.name for action in where.actions]
+    for arm in arms:
+        known = arm["action"] in names and 1 <= arm["opponent"] <= where.swarms
+        require(known, f"snapshot() must describe the game's actions and swarms, not {arm}")
 
 
-def check_same_seed_same_choices(build: Build) -> None:
-    """Check that nothing is drawn but from the robot's own streams."""
-    for swarm, swarms, actions in GAMES:
-        one, other = (build(setting(swarm, swarms, actions)) for _ in range(2))
-        random.random()
-        assert repr(live(one, swarms)) == repr(live(other, swarms)), "the same seed gave other choices"
+def check_results_of_methods(build: Factory) -> None:
+    """Check that the methods return actions of the game, pairs of floats and arms of the game."""
+    for where in settings():
+        policy = build(where)
+        play_conflicts(policy, where)
+        check_snapshot_of(policy, where)
 
 
-def check_robots_share_no_state(build: Build) -> None:
-    """Check that what another robot meets makes no difference."""
-    alone = live(build(setting(robot=4)), 2)
-    neighbour, one = build(setting(robot=5)), build(setting(robot=4))
-    live(neighbour, 2)
-    assert repr(live(one, 2)) == repr(alone), "another robot's conflicts made a difference"
+def check_same_seed_gives_same_choices(build: Factory) -> None:
+    """Check that the robot's streams are the only source of randomness."""
+    for where in settings():
+        stories = []
+        for _ in range(2):
+            again = where._replace(streams=Streams(0, 3))
+            stories.append(repr(play_conflicts(build(again), again)))
+            random.random()
+        require(stories[0] == stories[1], "the same seed gave other choices")
 
 
-def check_copies_go_on_alike(build: Build) -> None:
-    """Check that copies, pickled ones too, go on as the policy does."""
-    policy = build(setting())
-    live(policy, 2, conflicts=17)
-    twins = {"a deep copy": copy.deepcopy(policy), "a pickled one": pickle.loads(pickle.dumps(policy))}
-    story = repr(live(policy, 2))
-    for what, twin in twins.items():
-        assert repr(live(twin, 2)) == story, f"{what} goes on in another way"
+def check_robots_share_no_state(build: Factory) -> None:
+    """Check that the conflicts of one robot do not change another robot's choices."""
+    wheres = [setting(robot=robot) for robot in (4, 5, 4)]
+    alone = play_conflicts(build(wheres[0]), wheres[0])
+    neighbour, one = build(wheres[1]), build(wheres[2])
+    play_conflicts(neighbour, wheres[1])
+    story = play_conflicts(one, wheres[2])
+    require(repr(story) == repr(alone), "another robot's conflicts made a difference")
 
 
-def check_it_draws_from_the_streams_of_policies_alone(build: Build) -> None:
-    """Check that the draws of the robot's other decisions are left alone."""
+def check_copies_behave_alike(build: Factory) -> None:
+    """Check that copies, pickled ones too, continue as the policy does."""
+    where = setting()
+    policy = build(where)
+    play_conflicts(policy, where, conflicts=17)
+    twins = {"a deep copy": copy.deepcopy(policy), "a pickled copy": pickle.loads(pickle.dumps(policy))}
+    story = repr(play_conflicts(policy, where))
+    for name, twin in twins.items():
+        require(repr(play_conflicts(twin, where)) == story, f"{name} behaves differently")
+
+
+def check_other_streams_are_untouched(build: Factory) -> None:
+    """Check that the policy draws only from the streams for policies."""
     where = setting(seed=6)
-    live(build(where), 2)
+    play_conflicts(build(where), where)
     for purpose in set(Purpose) - {Purpose.EXPLORE, Purpose.POLICY}:
         untouched = stream(6, 3, purpose).random()
-        assert where.streams.draws(purpose).random() == untouched, f"it draws from {purpose.name}"
+        require(where.streams.draws(purpose).random() == untouched, f"it draws from {purpose.name}")
 
 
-def check_a_learner_can_be_told_and_stopped(build: Build) -> None:
-    """Check that what is told is answered by two floats, and that `freeze` ends exploring and learning."""
-    for swarm, swarms, actions in GAMES:
-        policy = build(setting(swarm, swarms, actions))
+def check_freezing_stops_learning(build: Factory) -> None:
+    """Check that `freeze` ends exploration and learning."""
+    for where in settings():
+        policy = build(where)
         if not hasattr(policy, "learn"):
             continue
-        for told in live(policy, swarms)[1::2]:
-            assert [isinstance(number, float) for number in told] == [True, True], f"learn(…) is {told!r}"
-        learner, snapshot = cast(LearningPolicy, policy), getattr(policy, "snapshot", list)
+        play_conflicts(policy, where)
+        learner = cast(LearningPolicy, policy)
         learner.freeze()
-        known = repr(snapshot())
+        learned = repr(snapshot_of(policy))
         chosen: dict[int, set[str]] = {}
-        for opponent, action in live(policy, swarms, learning=False):
+        for opponent, action in play_conflicts(policy, where, learning=False):
             chosen.setdefault(opponent, set()).add(action)
-        assert all(len(names) == 1 for names in chosen.values()), f"frozen, it still varies: {chosen}"
-        assert repr(snapshot()) == known, "frozen, it still learns"
+        fixed = all(len(names) == 1 for names in chosen.values())
+        require(fixed, f"the choices still vary after freeze(): {chosen}")
+        require(repr(snapshot_of(policy)) == learned, "it still learns after freeze()")
 
 
-POLICY_CHECKS: Final[tuple[Callable[[Build], None], ...]] = (
-    check_every_choice_is_one_of_the_games_actions,
-    check_same_seed_same_choices,
+POLICY_CHECKS: Final[tuple[Callable[[Factory], None], ...]] = (
+    check_results_of_methods,
+    check_same_seed_gives_same_choices,
     check_robots_share_no_state,
-    check_copies_go_on_alike,
-    check_it_draws_from_the_streams_of_policies_alone,
-    check_a_learner_can_be_told_and_stopped,
+    check_copies_behave_alike,
+    check_other_streams_are_untouched,
+    check_freezing_stops_learning,
 )
-"""Every check of a policy: of its class, or of what calls it with arguments."""
+"""The checks of a policy's class or factory."""

@@ -1,64 +1,72 @@
-"""What every reward must do."""
+"""Checks of rewards."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import product
 from typing import Final
 
-from kswarms.agents.conformance import shared as descriptions
+from kswarms.agents.conformance import shared
+from kswarms.agents.conformance.shared import require
 from kswarms.agents.learning.rewards import Reward
 
 Make = Callable[..., Reward]
+Case = tuple[float, float, int, int, bool, int]
+"""Arguments of `Reward.of`: T(a), T(p), n', d, inter, opponent."""
 
 
-def cases() -> Iterator[tuple[float, float, int, int, bool, int]]:
-    """Return what a reward may be told: T(a), T(p), n', d, inter, opponent."""
+def cases() -> Iterator[Case]:
+    """Return arguments of `Reward.of` that cover its range."""
     yield from product(
         (0.1, 2.3, 600.0), (0.0, 0.1, 6.0, 3000.0), (0, 3, 8), (-1, 1), (False, True), (1, 2, 9)
     )
 
 
-def _rewards(reward: Reward) -> list[float]:
-    return [reward.of(*case) for case in cases()]
+def compute_rewards(reward: Reward, conflicts: Iterable[Case]) -> list[float]:
+    """Return the rewards of some conflicts.
+
+    Raises
+    ------
+    CheckError
+        If one is no finite number.
+    """
+    rewards = []
+    for case in conflicts:
+        r = reward.of(*case)
+        is_finite = isinstance(r, float | int) and math.isfinite(r)
+        require(is_finite, f"of{case} must return a finite float, not {r!r}")
+        rewards.append(r)
+    return rewards
 
 
-def check_copies_are_equal_and_reward_alike(make: Make) -> None:
-    """Check that copies, pickled ones too, are equal and reward alike."""
-    descriptions.check_copies_are_alike(make, _rewards)
+def check_copies(make: Make) -> None:
+    """Check that copies, pickled ones too, are equal and give the same rewards."""
+    shared.check_copies(make, lambda reward: [reward.of(*case) for case in cases()])
 
 
-def check_it_is_frozen(make: Make) -> None:
+def check_frozen(make: Make) -> None:
     """Check that nothing changes it."""
-    descriptions.check_it_is_frozen(make, _rewards)
+    shared.check_frozen(make, lambda reward: [reward.of(*case) for case in cases()])
 
 
-def check_it_knows_no_other_arguments(make: Make) -> None:
-    """Check that an argument that it does not have is refused."""
-    descriptions.check_it_knows_no_other_arguments(make)
+def check_rewards_are_finite(make: Make) -> None:
+    """Check that R is a finite number for every conflict."""
+    compute_rewards(make(), cases())
 
 
-def check_a_reward_is_a_finite_number(make: Make) -> None:
-    """Check that whatever the conflict was, R is a finite float."""
-    for case in cases():
-        r = make().of(*case)
-        assert isinstance(r, float), f"of{case} is {r!r}, no float"
-        assert math.isfinite(r), f"of{case} is {r}"
-
-
-def check_the_same_conflict_brings_the_same(make: Make) -> None:
-    """Check that R depends on the conflict alone, not on those before it."""
+def check_same_conflict_gives_same_reward(make: Make) -> None:
+    """Check that R depends on the conflict alone, not on earlier ones."""
     one = make()
     first = {case: one.of(*case) for case in cases()}
     for case in reversed(list(first)):
-        assert one.of(*case) == first[case], f"of{case} is another the second time"
-        assert make().of(*case) == first[case], f"of{case} is another for another robot"
+        require(one.of(*case) == first[case], f"of{case} differs the second time")
+        require(make().of(*case) == first[case], f"of{case} differs for another robot")
 
 
 REWARD_CHECKS: Final[tuple[Callable[[Make], None], ...]] = (
-    check_copies_are_equal_and_reward_alike,
-    check_it_is_frozen,
-    check_it_knows_no_other_arguments,
-    check_a_reward_is_a_finite_number,
-    check_the_same_conflict_brings_the_same,
+    check_copies,
+    check_frozen,
+    shared.check_unknown_arguments,
+    check_rewards_are_finite,
+    check_same_conflict_gives_same_reward,
 )
-"""Every check of a reward: of its class, or of what calls it with arguments."""
+"""The checks of a reward's class or factory."""

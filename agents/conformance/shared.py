@@ -1,4 +1,4 @@
-"""What rewards and rules have in common: they are frozen, checked descriptions."""
+"""Checks that rewards and selection rules share: both are frozen, validated descriptions."""
 
 import copy
 import pickle
@@ -9,45 +9,55 @@ from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
 
 Make = Callable[..., Any]
-"""A class, or what calls it with arguments: ``functools.partial(MyReward, weight=2.0)``."""
+"""A class, or a callable that builds one: ``functools.partial(MyReward, weight=2.0)``."""
 Use = Callable[[Any], Any]
-"""Does with a description what a game does, and returns what came of it."""
+"""Uses a description as a game does, and returns the results."""
 
 
-def check_copies_are_alike(make: Make, use: Use) -> None:
-    """Check that two of the same arguments, copies of it and pickled ones are equal and do the same."""
+class CheckError(AssertionError):
+    """A check failed. Unlike ``assert``, it is raised in optimized mode too."""
+
+
+def require(condition: bool, message: str) -> None:
+    """Raise a `CheckError` unless a condition holds."""
+    if not condition:
+        raise CheckError(message)
+
+
+def check_copies(make: Make, use: Use) -> None:
+    """Check that copies, pickled ones too, are equal and give the same results."""
     one = make()
     twins = {
         "another": make(),
         "a copy": copy.copy(one),
         "a deep copy": copy.deepcopy(one),
-        "a pickled one": pickle.loads(pickle.dumps(one)),
+        "a pickled copy": pickle.loads(pickle.dumps(one)),
         "one built from its fields": one.replace(),
     }
-    for what, twin in twins.items():
-        assert twin == one, f"{what} is not equal"
-        assert hash(twin) == hash(one), f"{what} has another hash"
-        assert use(twin) == use(one), f"{what} does something else"
+    for name, twin in twins.items():
+        require(twin == one, f"{name} is not equal")
+        require(hash(twin) == hash(one), f"{name} has another hash")
+        require(use(twin) == use(one), f"{name} gives other results")
 
 
-def check_it_is_frozen(make: Make, use: Use) -> None:
+def check_frozen(make: Make, use: Use) -> None:
     """Check that neither use nor an assignment changes it."""
     one: Checked = make()
     before = repr(one), dict(vars(one))
     use(one)
-    assert (repr(one), dict(vars(one))) == before, "it is changed by its use"
+    require((repr(one), dict(vars(one))) == before, "its use changes it")
     for field in type(one).model_fields:
         try:
             setattr(one, field, getattr(one, field))
         except ValueError:
             continue
-        raise AssertionError(f"{field} can be assigned to")
+        raise CheckError(f"{field} can be assigned to")
 
 
-def check_it_knows_no_other_arguments(make: Make) -> None:
-    """Check that an argument that it does not have is refused."""
+def check_unknown_arguments(make: Make) -> None:
+    """Check that an unknown argument is refused."""
     try:
         make(no_such_argument=1)
     except InputError:
         return
-    raise AssertionError("it takes an argument that it does not have")
+    raise CheckError("it accepts an unknown argument")

@@ -1,30 +1,26 @@
-"""Rewards: what a conflict was worth, by what the robot itself sensed (specification, section 1.4).
+"""Rewards of conflicts, computed from what the robot itself senses (specification, section 1.4).
 
-A reward is a frozen description with a method; a new one is a subclass of `Reward`, under a name in `REWARDS`
-or in a file of a user's own.
+A reward is a frozen description with a method. A new one is a subclass of `Reward`: named in `REWARDS`, or
+user-defined. All robots of a policy share one reward object.
 """
 
-import math
 from abc import ABC, abstractmethod
-from itertools import product
 from typing import Annotated, Final
 
 from pydantic import Discriminator, Field, Tag
 
+from kswarms.agents.body import SENSORS
 from kswarms.agents.common.descriptions import Checked
-from kswarms.agents.common.errors import InputError
-from kswarms.agents.robot.body import SENSORS
 from kswarms.agents.theory.estimates import estimated_wlu, program_weight_of_equals, sigma
 from kswarms.agents.theory.times import intra_utility
-from kswarms.agents.user_code.loading import blaming, is_reference
-from kswarms.agents.user_code.syntax import build, parse_call
+from kswarms.agents.user_code.syntax import build
 
 
 def _kind(value: object) -> str:
     return "by-opponent" if isinstance(value, dict) else "for-all"
 
 
-# Told apart by what is given, so that an error speaks of the form that was meant.
+# Discriminated unions, so that an error is about the form that was given.
 _Delta = Annotated[float, Field(strict=True, ge=0, le=1)]
 _Deltas = Annotated[
     Annotated[_Delta, Tag("for-all")] | Annotated[dict[int, _Delta], Tag("by-opponent")], Discriminator(_kind)
@@ -36,10 +32,10 @@ _Ratios = Annotated[
 
 
 class Reward(Checked, ABC):
-    """Base of the rewards."""
+    """Base class of rewards."""
 
     def opponents(self) -> frozenset[int]:
-        """Return the swarm-IDs (from 1) that it names."""
+        """Return the swarm-IDs (from 1) that the arguments name."""
         return frozenset()
 
     @abstractmethod
@@ -51,11 +47,11 @@ class Reward(Checked, ABC):
         t_a, t_p : float
             T(a) and T(p) (s).
         n_active : int
-            n'_i: sensors of the eight that were active when it began.
+            n'_i, number of active sensors at the start of the conflict, 0 to 8.
         direction : {-1, 1}
-            d of the action taken: +1 towards the other robot, −1 away.
+            d of the action: +1 towards the other robot, −1 away.
         inter : bool
-            Whether the other robot was of another swarm.
+            Whether the other robot belongs to another swarm.
         opponent : int
             Swarm-ID of the other robot, from 1.
         """
@@ -67,16 +63,16 @@ class WLU(Reward):
     Attributes
     ----------
     delta : float, or dict of int to float
-        Δ, for all opponents or for each swarm-ID (0.125 for those not named).
+        Δ for all opponents, or by swarm-ID (default 0.125).
     b : float, or dict of int to float
-        The opponent's advantage β_m/β_i, likewise (1 for those not named).
+        Advantage β_m/β_i of the opponents, for all or by swarm-ID (default 1).
     """
 
     delta: _Deltas = 0.125
     b: _Ratios = 1.0
 
     def opponents(self) -> frozenset[int]:
-        """Return the swarm-IDs that have a Δ or b of their own."""
+        """Return the swarm-IDs with their own Δ or b."""
         return frozenset(swarm for each in (self.delta, self.b) if isinstance(each, dict) for swarm in each)
 
     def of(self, t_a: float, t_p: float, n_active: int, direction: int, inter: bool, opponent: int) -> float:
@@ -108,7 +104,7 @@ class IndividualUtility(Reward):
 
 
 class SingleSwarmWLU(Reward):
-    """WLU of a swarm that is alone: R = (n'/8) · (T(p) − κ T(a)) (section 6.3.5).
+    """WLU in a game of one swarm: R = (n'/8) · (T(p) − κ T(a)) (section 6.3.5).
 
     Attributes
     ----------
@@ -128,28 +124,21 @@ REWARDS: Final[dict[str, type[Reward]]] = {
     "individual": IndividualUtility,
     "single-swarm": SingleSwarmWLU,
 }
-"""Every reward by its name."""
+"""The rewards by name."""
 
 
-def make_reward(text: str) -> Reward:
-    """Build the reward that a text describes, and try one from outside.
+def make_reward(reward: str | Reward) -> Reward:
+    """Return a reward, built from its text if one is given.
 
     Parameters
     ----------
-    text : str
-        One of `REWARDS`, or a subclass of `Reward` as ``path/to/my_file.py:MyReward``, with arguments.
+    reward : str or Reward
+        A reward, the name of one of `REWARDS`, or a subclass of `Reward` as ``path/to/my_file.py:MyReward``,
+        with arguments.
 
     Raises
     ------
     InputError
-        If there is no such reward, or it gives something else than a finite float.
+        If there is no such reward, or an argument is not allowed.
     """
-    reward = build("reward", text, REWARDS, Reward)
-    name = parse_call("reward", text).name
-    if is_reference(name):
-        for t_p, direction, inter in product((0.0, 6.0), (-1, 1), (False, True)):
-            with blaming("reward", name, "of(…)"):
-                earned = reward.of(1.8, t_p, 3, direction, inter, 1)
-            if not isinstance(earned, float | int) or not math.isfinite(earned):
-                raise InputError("reward", name, f"of(…) must return a finite float, not {earned!r}")
-    return reward
+    return reward if isinstance(reward, Reward) else build("reward", reward, REWARDS, Reward)

@@ -1,45 +1,41 @@
-"""Selection rules: which arm to pull while learning (specification, section 1.5).
+"""Selection rules: the choice of an arm while learning (specification, section 1.5).
 
-A rule is a frozen description with a method; a new one is a subclass of `Rule`, under a name in `RULES` or in
-a file of a user's own.
+A rule is a frozen description with a method. A new one is a subclass of `Rule`: named in `RULES`, or
+user-defined. All robots of a policy share one rule object; what is learned is in their bandits.
 """
 
 import math
 from abc import ABC, abstractmethod
-from numbers import Integral
 from typing import Final
 
 from numpy.random import Generator
 from pydantic import Field
 
 from kswarms.agents.common.descriptions import Checked
-from kswarms.agents.common.errors import InputError
 from kswarms.agents.learning.bandit import Bandit
-from kswarms.agents.streams import Purpose, stream
-from kswarms.agents.user_code.loading import blaming, is_reference
-from kswarms.agents.user_code.syntax import build, parse_call
+from kswarms.agents.user_code.syntax import build
 
 FORGOTTEN: Final = 1e-12
-"""An arm whose discounted count is less counts as never tried."""
+"""An arm with a smaller discounted count is treated as untried."""
 
 
 class Rule(Checked, ABC):
-    """Base of the selection rules: arms never tried come first, in random order."""
+    """Base class of selection rules: untried arms come first, in random order."""
 
     @property
     def factor(self) -> float:
-        """What the past is multiplied by at each new conflict of the bandit, 1 to forget nothing."""
+        """Discount factor of earlier conflicts at each new conflict of the bandit; 1 for no discounting."""
         return 1.0
 
     def choose(self, bandit: Bandit, draws: Generator) -> int:
-        """Return the arm to pull now.
+        """Return the arm to pull, from 0.
 
         Parameters
         ----------
         bandit : Bandit
-            What is known.
+            The bandit of the opponent's swarm.
         draws : numpy.random.Generator
-            The robot's own stream for this purpose.
+            The robot's stream for exploration.
         """
         if min(bandit.count) < FORGOTTEN:
             untried = [arm for arm, count in enumerate(bandit.count) if count < FORGOTTEN]
@@ -48,7 +44,7 @@ class Rule(Checked, ABC):
 
     @abstractmethod
     def prefer(self, bandit: Bandit, draws: Generator) -> int:
-        """Return the arm to pull, from 0, when all were tried."""
+        """Return the arm to pull, from 0, once all arms have been tried."""
 
 
 class UCB(Rule):
@@ -57,33 +53,33 @@ class UCB(Rule):
     Attributes
     ----------
     gamma : float
-        γ, how much is explored.
+        γ, the weight of exploration.
     """
 
     gamma: float = Field(0.1211, ge=0)
 
     def bounds(self, bandit: Bandit) -> list[float]:
-        """Return Q(a) + sqrt(γ ln N / N(a)) of each arm; all must have been tried."""
+        """Return Q(a) + sqrt(γ ln N / N(a)) of each arm, all of which must have been tried."""
         scale, sqrt = self.gamma * math.log(sum(bandit.count)), math.sqrt
         return [
             reward / time + sqrt(scale / count)
-            for reward, time, count in zip(bandit.reward, bandit.time, bandit.count)  # noqa: B905  # one bandit's
+            for reward, time, count in zip(bandit.reward, bandit.time, bandit.count)  # noqa: B905  # same length
         ]
 
     def prefer(self, bandit: Bandit, draws: Generator) -> int:
-        """Return the arm of the greatest bound, ties broken at random."""
+        """Return the arm with the greatest bound, ties broken at random."""
         return _greatest(self.bounds(bandit), draws)
 
 
 class DiscountedUCB(UCB):
-    """UCB on sums that lose a part of their weight at each conflict (Garivier & Moulines 2008).
+    """UCB on discounted sums (Garivier & Moulines 2008).
 
-    Q, N(a) and N are the discounted ones: bonus sqrt(γ ln n_λ / N_λ(a)), n_λ = Σ_a N_λ(a).
+    Q, N(a) and N are discounted: the bonus is sqrt(γ ln n_λ / N_λ(a)), n_λ = Σ_a N_λ(a).
 
     Attributes
     ----------
     discount : float
-        λ, what remains of the past at each conflict of the bandit.
+        λ, the discount factor at each conflict of the bandit.
     """
 
     discount: float = Field(0.99, gt=0, le=1)
@@ -95,36 +91,36 @@ class DiscountedUCB(UCB):
 
 
 class Greedy(Rule):
-    """Always the arm of the greatest Q."""
+    """The arm with the greatest Q."""
 
     def prefer(self, bandit: Bandit, draws: Generator) -> int:
-        """Return the arm of the greatest Q, ties broken at random."""
+        """Return the arm with the greatest Q, ties broken at random."""
         return _greatest([bandit.value(arm) for arm in range(len(bandit.count))], draws)
 
 
 class PeriodicRandom(Greedy):
-    """Greedy, but every so many choices one is random.
+    """Greedy, except that every `every`-th choice is random.
 
     Attributes
     ----------
     every : int
-        Of each this many choices of a bandit the last is uniformly random.
+        Period of the uniformly random choices, counted for each bandit.
     """
 
     every: int = Field(5, ge=1)
 
     def prefer(self, bandit: Bandit, draws: Generator) -> int:
-        """Return a random arm if it is time for one, else that of the greatest Q."""
+        """Return a random arm if one is due, else the arm with the greatest Q."""
         if (bandit.choices + 1) % self.every == 0:
             return _pick(len(bandit.count), draws)
         return super().prefer(bandit, draws)
 
 
 class UniformRandom(Rule):
-    """Every arm with the same probability, whatever is known."""
+    """Every arm with the same probability."""
 
     def choose(self, bandit: Bandit, draws: Generator) -> int:
-        """Return a random arm, also while some were never tried."""
+        """Return a random arm, also while some are untried."""
         return self.prefer(bandit, draws)
 
     def prefer(self, bandit: Bandit, draws: Generator) -> int:
@@ -139,41 +135,24 @@ RULES: Final[dict[str, type[Rule]]] = {
     "periodic-random": PeriodicRandom,
     "uniform-random": UniformRandom,
 }
-"""Every selection rule by its name."""
+"""The selection rules by name."""
 
 
-def make_rule(text: str, arms: int) -> Rule:
-    """Build the rule that a text describes, and try one from outside.
+def make_rule(rule: str | Rule) -> Rule:
+    """Return a selection rule, built from its text if one is given.
 
     Parameters
     ----------
-    text : str
-        One of `RULES`, or a subclass of `Rule` as ``path/to/my_file.py:MyRule``, with arguments.
-    arms : int
-        Number of actions that it is to choose from.
+    rule : str or Rule
+        A rule, the name of one of `RULES`, or a subclass of `Rule` as ``path/to/my_file.py:MyRule``, with
+        arguments.
 
     Raises
     ------
     InputError
-        If there is no such rule, or it chooses what is no arm.
+        If there is no such rule, or an argument is not allowed.
     """
-    rule = build("rule", text, RULES, Rule)
-    name = parse_call("rule", text).name
-    if is_reference(name):
-        bandit, draws = Bandit(arms), stream(0, 0, Purpose.EXPLORE)
-        with blaming("rule", name, "factor"):
-            factor = rule.factor
-        if not isinstance(factor, float | int) or not 0 < factor <= 1:
-            raise InputError("rule", name, f"factor must be a number above 0 and at most 1, not {factor!r}")
-        for _ in range(2 * arms):
-            with blaming("rule", name, "choose(…)"):
-                arm = rule.choose(bandit, draws)
-            if not isinstance(arm, Integral) or not 0 <= arm < arms:
-                raise InputError("rule", name, f"prefer(…) must return 0 to {arms - 1}, not {arm!r}")
-            bandit.choices += 1
-            with blaming("rule", name, "choose(…) changes the bandit, and its update"):
-                bandit.update(arm, 1.0, 2.0, factor)
-    return rule
+    return rule if isinstance(rule, Rule) else build("rule", rule, RULES, Rule)
 
 
 def _greatest(values: list[float], draws: Generator) -> int:

@@ -6,38 +6,58 @@ from kswarms.agents.streams import Purpose
 
 
 class FixedPolicy:
-    """The same action whenever a robot of the same kind (own swarm, other swarm) is met.
-
-    Parameters
-    ----------
-    swarm : int
-        Own swarm, counted from 0.
-    within : Action
-        Action within the own swarm.
-    against : Action
-        Action against every other swarm.
-    """
-
-    def __init__(self, swarm: int, within: Action, against: Action) -> None:
-        self.swarm = swarm
-        self.within = within
-        self.against = against
-
-    def choose(self, opponent: int) -> Action:
-        """Return the action to take against a robot of swarm `opponent`."""
-        return self.within if opponent == self.swarm else self.against
-
-    def __repr__(self) -> str:
-        return f"FixedPolicy(swarm={self.swarm}, within={self.within.name!r}, against={self.against.name!r})"
-
-
-class RandomPolicy:
-    """Flight within the own swarm; against others flight or fight with equal probability.
+    """Take one action within the own swarm and one against every other swarm.
 
     Parameters
     ----------
     setting : Setting
-        Where it plays.
+        Where the policy plays.
+    within, against : Action
+        Action within the own swarm and action against other swarms.
+    """
+
+    def __init__(self, setting: Setting, within: Action, against: Action) -> None:
+        self.swarm = setting.swarm
+        self.within = within
+        self.against = against
+
+    def choose(self, opponent: int) -> Action:
+        """Return the action against a robot of swarm `opponent` (from 0)."""
+        return self.within if opponent == self.swarm else self.against
+
+    def __repr__(self) -> str:
+        name = type(self).__name__
+        return f"{name}(swarm={self.swarm}, within={self.within.name!r}, against={self.against.name!r})"
+
+
+class Avoid(FixedPolicy):
+    """Flight from every robot."""
+
+    def __init__(self, setting: Setting) -> None:
+        super().__init__(setting, within=setting.first(AWAY), against=setting.first(AWAY))
+
+
+class Attack(FixedPolicy):
+    """Flight within the own swarm, fight against others."""
+
+    def __init__(self, setting: Setting) -> None:
+        super().__init__(setting, within=setting.first(AWAY), against=setting.first(TOWARDS))
+
+
+class Aggressive(FixedPolicy):
+    """Fight against every robot."""
+
+    def __init__(self, setting: Setting) -> None:
+        super().__init__(setting, within=setting.first(TOWARDS), against=setting.first(TOWARDS))
+
+
+class RandomPolicy:
+    """Flight within the own swarm, flight or fight with equal probability against others.
+
+    Parameters
+    ----------
+    setting : Setting
+        Where the policy plays.
     """
 
     def __init__(self, setting: Setting) -> None:
@@ -47,7 +67,7 @@ class RandomPolicy:
         self._streams = setting.streams
 
     def choose(self, opponent: int) -> Action:
-        """Return the action to take against a robot of swarm `opponent`."""
+        """Return the action against a robot of swarm `opponent` (from 0)."""
         if opponent == self.swarm:
             return self._within
         return self._against[self._streams.draws(Purpose.POLICY).random() < 0.5]

@@ -1,8 +1,8 @@
-"""What a policy is, and what it is built for (specification, section 2.4).
+"""Interface of policies (specification, section 2.4).
 
-A policy is asked once for each conflict, with what the robot knows of the other: its swarm-ID. One that
-learns is also told how each conflict ended. A policy of a user's own is a class with the methods of `Policy`,
-and those of `LearningPolicy` if it learns; nothing has to be derived from.
+A policy chooses an action at each conflict, given the opponent's swarm-ID. A learning policy is also told the
+outcome of each conflict. A user-defined policy is a class with the methods of `Policy`, and those of
+`LearningPolicy` if it learns; it needs no base class.
 """
 
 from collections.abc import Sequence
@@ -14,18 +14,18 @@ from kswarms.agents.streams import Streams
 
 
 class Setting(NamedTuple):
-    """What a policy is built for.
+    """The robot and the game that a policy is built for.
 
     Attributes
     ----------
     swarm : int
-        Swarm of the robot, counted from 0.
+        Swarm of the robot, from 0.
     swarms : int
         Number of swarms.
     actions : sequence of Action
         The actions of the game.
     streams : Streams
-        The robot's streams.
+        The robot's random streams.
     place : int
         Number of the robot within its swarm, from 0.
     """
@@ -37,12 +37,12 @@ class Setting(NamedTuple):
     place: int = 0
 
     def first(self, direction: int) -> Action:
-        """Return the first action of a direction, `kswarms.agents.actions.AWAY` or `TOWARDS`.
+        """Return the first action of a direction, `AWAY` or `TOWARDS`.
 
         Raises
         ------
         InputError
-            If the game has none.
+            If there is none.
         """
         for action in self.actions:
             if action.direction == direction:
@@ -52,40 +52,40 @@ class Setting(NamedTuple):
 
 
 class Policy(Protocol):
-    """What decides at a conflict.
+    """Chooses the action at a conflict.
 
-    A class of a user's own is called with a `Setting` and the keyword arguments of the text that names it.
+    A class is called with a `Setting` and the keyword arguments of the policy's text.
     """
 
     def choose(self, opponent: int) -> Action:
-        """Return the action to take against a robot of swarm `opponent` (counted from 0)."""
+        """Return the action against a robot of swarm `opponent` (from 0)."""
         ...
 
 
 class LearningPolicy(Policy, Protocol):
-    """A policy that is told how its conflicts ended, until the measured game begins.
+    """A policy that learns from the outcomes of its conflicts until the measured game begins.
 
-    Without a learning phase it is told throughout that game. If it also has a method ``snapshot``, which
-    returns what `Learner.snapshot` does, then what it learned is recorded and can be saved.
+    Without a learning phase it learns throughout the measured game. With an additional method ``snapshot``
+    like that of `Learner`, its learned values are recorded and can be saved.
     """
 
     def learn(self, t_a: float, t_p: float, n_active: int) -> tuple[float, float]:
-        """Close the conflict chosen for last.
+        """Report the outcome of the latest conflict.
 
         Parameters
         ----------
         t_a, t_p : float
             T(a) and T(p) (s).
         n_active : int
-            n'_i, sensors that were active when it began.
+            n'_i, number of active sensors at the start of the conflict.
 
         Returns
         -------
         reward, value : float
-            What the conflict was worth (s) and Q of the action after it, for the record; NaN for none.
+            Reward of the conflict (s) and Q of its action after it, for the record; NaN for none.
         """
         ...
 
     def freeze(self) -> None:
-        """Stop learning: from now on choose what was learned, without exploration."""
+        """Stop learning: choose the learned actions, without exploration."""
         ...

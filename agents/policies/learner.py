@@ -1,4 +1,4 @@
-"""The learner: a bandit for each swarm-ID that a robot can meet (section 1.5, Algorithm 1)."""
+"""The learner: one bandit for each opponent swarm (section 1.5, Algorithm 1)."""
 
 from math import isfinite, nan
 from typing import Any, Final, Literal
@@ -9,38 +9,44 @@ from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.learning.bandit import Bandit
 from kswarms.agents.learning.rewards import Reward, make_reward
-from kswarms.agents.learning.selection_rules import make_rule
+from kswarms.agents.learning.selection_rules import Rule, make_rule
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.saved import flight
 from kswarms.agents.streams import Purpose
+from kswarms.agents.user_code.loading import user_errors
 
+LEARNS_BY: Final = {"reward": "wlu", "rule": "ucb"}
+"""Default reward and selection rule."""
 _NOTHING: Final = (nan, nan)
-"""Reward and value of a conflict that nothing is learned from."""
+"""Reward and value of a conflict that is not learned from."""
 
 
 class Learner:
-    """Learns which action to take against which swarm, and takes a fixed one against the others.
+    """Learn an action against each swarm, or only against some swarms and take a fixed action against others.
 
     Parameters
     ----------
     setting : Setting
-        Where it plays.
+        Where the policy plays.
     about : {'inter', 'intra', 'both'}
-        Whether it learns about other swarms, its own, or both.
-    reward, rule : str
-        As `make_reward` and `make_rule` take them.
+        Learn about other swarms, the own swarm, or both.
+    reward : str or Reward
+        As in `make_reward`.
+    rule : str or Rule
+        As in `make_rule`.
     otherwise : str
-        Name of the action against the swarms that it does not learn about; by default the first that
-        drives away.
+        Name of the action against swarms that are not learned about; by default the first flight.
 
     Attributes
     ----------
+    reward : Reward
+        The reward of a conflict.
     rule : Rule
-        How an arm is chosen while it learns.
+        The selection rule while learning.
     bandits : dict of int to Bandit
-        What it knows about each swarm (counted from 0) that it learns about.
+        A bandit for each swarm (from 0) that is learned about.
     learning : bool
-        Whether it still learns; afterwards it takes what it learned, without exploration.
+        Whether the policy still learns. Afterwards it takes the best action without exploration.
 
     Raises
     ------
@@ -52,8 +58,8 @@ class Learner:
         self,
         setting: Setting,
         about: Literal["inter", "intra", "both"] = "both",
-        reward: str = "wlu",
-        rule: str = "ucb",
+        reward: str | Reward = LEARNS_BY["reward"],
+        rule: str | Rule = LEARNS_BY["rule"],
         otherwise: str = "",
     ) -> None:
         if about not in ("inter", "intra", "both"):
@@ -66,12 +72,10 @@ class Learner:
             if not isinstance(otherwise, str) or otherwise not in by_name:
                 raise InputError("otherwise", otherwise, f"must be one of {', '.join(by_name)}")
             self._otherwise = by_name[otherwise]
-        self._reward = make_reward(reward)
-        for opponent in sorted(self._reward.opponents()):
-            if not 1 <= opponent <= setting.swarms:
-                raise InputError("reward", reward, f"names swarm {opponent}, the game has {setting.swarms}")
-        self.rule = make_rule(rule, len(self.actions))
-        self._factor = self.rule.factor
+        self.reward = make_reward(reward)
+        self.rule = make_rule(rule)
+        with user_errors("rule", type(self.rule).__qualname__, "factor"):
+            self._factor = self.rule.factor
         self.bandits = {
             swarm: Bandit(len(self.actions))
             for swarm in range(setting.swarms)
@@ -79,23 +83,20 @@ class Learner:
         }
         if not self.bandits:
             raise InputError("about", about, "needs another swarm to learn about")
-        for opponent in sorted(self._reward.opponents()):
+        for opponent in sorted(self.reward.opponents()):
+            if not 1 <= opponent <= setting.swarms:
+                raise InputError("reward", reward, f"names swarm {opponent}, the game has {setting.swarms}")
             if opponent - 1 not in self.bandits:
-                raise InputError("reward", reward, f"names swarm {opponent}, which it learns nothing about")
+                raise InputError("reward", reward, f"names swarm {opponent}, which is not learned about")
         self.learning = True
         self._draws = setting.streams.draws
         self._explore: Generator | None = None
-        """The stream that it draws from, once it did."""
+        """The stream for exploration, created on first use."""
         self._opponent = -1
         self._arm = -1
 
-    @property
-    def reward(self) -> Reward:
-        """What it is rewarded by."""
-        return self._reward
-
     def choose(self, opponent: int) -> Action:
-        """Return the action to take against a robot of swarm `opponent` (Eq. 4.16 while learning)."""
+        """Return the action against a robot of swarm `opponent` (Eq. 4.16 while learning)."""
         self._opponent = opponent
         bandit = self.bandits.get(opponent)
         if bandit is None:
@@ -112,23 +113,23 @@ class Learner:
         return self.actions[self._arm]
 
     def learn(self, t_a: float, t_p: float, n_active: int) -> tuple[float, float]:
-        """Close the conflict chosen for last, and reward its arm.
+        """Report the outcome of the latest conflict and reward its arm.
 
         Parameters
         ----------
         t_a, t_p, n_active
-            As in `kswarms.agents.policies.interface.LearningPolicy.learn`.
+            As in `LearningPolicy.learn`.
 
         Returns
         -------
         reward, value : float
-            R of the conflict (s) and Q of its arm after it; NaN if nothing is learned of that swarm.
+            R of the conflict (s) and Q of its arm after it; NaN if the swarm is not learned about.
         """
         opponent, arm = self._opponent, self._arm
         bandit = self.bandits.get(opponent)
         if bandit is None or not self.learning:
             return _NOTHING
-        reward = self._reward.of(
+        reward = self.reward.of(
             t_a, t_p, n_active, self.actions[arm].direction, opponent != self.swarm, opponent + 1
         )
         if not isfinite(reward):
@@ -137,7 +138,7 @@ class Learner:
         return reward, bandit.value(arm)
 
     def learned(self, opponent: int) -> Action:
-        """Return argmax Q for a swarm learned about; flight where nothing is known."""
+        """Return argmax Q for a swarm; flight if no arm was tried."""
         best = self.bandits[opponent].best()
         return self._flight if best is None else self.actions[best]
 
@@ -146,7 +147,7 @@ class Learner:
         self.learning = False
 
     def snapshot(self) -> list[dict[str, Any]]:
-        """Return what is known: for each arm the opponent's swarm (from 1), action, Σ R, Σ T, N and Q."""
+        """Return the learned values of each arm: opponent's swarm (from 1), action, Σ R, Σ T, N and Q."""
         return [
             {
                 "opponent": swarm + 1,
@@ -161,4 +162,4 @@ class Learner:
         ]
 
     def __repr__(self) -> str:
-        return f"Learner(swarm={self.swarm}, reward={self._reward!r}, rule={self.rule!r}, {self.bandits})"
+        return f"Learner(swarm={self.swarm}, reward={self.reward!r}, rule={self.rule!r}, {self.bandits})"

@@ -1,7 +1,7 @@
-"""Learned policies that outlive their game: written to a file, and played in another one."""
+"""Save and load learned policies."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
@@ -10,7 +10,7 @@ from kswarms.agents.actions import AWAY, Action
 from kswarms.agents.common.atomic_files import whole
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.policies.interface import Setting
+from kswarms.agents.policies.interface import Policy, Setting
 
 _FORMAT: Final = "kswarms-policies-1"
 
@@ -25,22 +25,22 @@ class _SavedArm(Checked):
 
 
 class LearnedPolicy:
-    """What a robot learned in another game: argmax Q for each swarm-ID, flight where it knows none.
+    """Actions learned in another game: argmax Q for each opponent swarm, flight without data.
 
-    The robots of the swarm take the policies of the file in turn, so it may be larger or smaller than the
-    swarm that learned.
+    Robot k of the swarm takes policy k of the file, modulo the number of policies, so the swarm may differ in
+    size from the one that learned.
 
     Parameters
     ----------
     setting : Setting
-        Where it plays.
+        Where the policy plays.
     file : str
         Path of a file written by `save`.
 
     Raises
     ------
     InputError
-        If there is no such file, or what was learned does not fit the game.
+        If there is no such file, or its policies do not fit the game.
     """
 
     def __init__(self, setting: Setting, file: str = "") -> None:
@@ -58,14 +58,14 @@ class LearnedPolicy:
                 raise InputError("file", file, f"has action {arm['action']}, the game {', '.join(names)}")
             if not 1 <= arm["opponent"] <= setting.swarms:
                 raise InputError(
-                    "file", file, f"knows swarm {arm['opponent']}, the game has {setting.swarms}"
+                    "file", file, f"has swarm {arm['opponent']}, the game has {setting.swarms}"
                 )
         self.swarm = setting.swarm
         self._flight = flight(setting.actions)
         self._actions = best_actions(robots[setting.place % len(robots)], setting.actions)
 
     def choose(self, opponent: int) -> Action:
-        """Return the action to take against a robot of swarm `opponent` (counted from 0)."""
+        """Return the action against a robot of swarm `opponent` (from 0)."""
         return self._actions.get(opponent, self._flight)
 
     def __repr__(self) -> str:
@@ -74,17 +74,17 @@ class LearnedPolicy:
 
 
 def flight(actions: Sequence[Action]) -> Action:
-    """Return what is done where nothing is known: the first action that drives away, or the first of all."""
+    """Return the default action: the first that drives away, else the first of all."""
     return next((action for action in actions if action.direction == AWAY), actions[0])
 
 
 def best_actions(arms: Sequence[Mapping[str, Any]], actions: Sequence[Action]) -> dict[int, Action]:
-    """Return argmax Q for each swarm (counted from 0) that arms tell of; flight where none was tried.
+    """Return argmax Q for each opponent swarm (from 0); flight if no arm was tried.
 
     Parameters
     ----------
     arms : sequence of dict
-        As of `kswarms.agents.policies.learner.Learner.snapshot`.
+        Arms as in `Learner.snapshot`.
     actions : sequence of Action
         The actions of the game.
     """
@@ -100,31 +100,37 @@ def best_actions(arms: Sequence[Mapping[str, Any]], actions: Sequence[Action]) -
     }
 
 
+def snapshot_of(policy: Policy) -> list[dict[str, Any]]:
+    """Return the learned arms of a policy, as in `Learner.snapshot`; empty if it has no such method."""
+    snapshot: Callable[[], list[dict[str, Any]]] = getattr(policy, "snapshot", list)
+    return snapshot()
+
+
 def save(path: Path, swarm: int, robots: Sequence[Sequence[Mapping[str, Any]]]) -> None:
-    """Write the learned policies of a swarm, whole or not at all.
+    """Write the learned policies of a swarm atomically.
 
     Parameters
     ----------
     path : Path
-        Where to.
+        The file.
     swarm : int
         Swarm-ID, from 1.
-    robots : sequence of `kswarms.agents.policies.learner.Learner.snapshot`
-        What each of its robots has learned.
+    robots : sequence of sequence of dict
+        The learned arms of each robot, as in `Learner.snapshot`.
 
     Raises
     ------
     OSError
-        If it cannot be written; then nothing is.
+        If the file cannot be written.
     """
-    known = [[_without_nan(arm) for arm in arms] for arms in robots]
-    text = json.dumps({"format": _FORMAT, "swarm": swarm, "robots": known}, indent=1)
+    arms_of_robots = [[_without_nan(arm) for arm in arms] for arms in robots]
+    text = json.dumps({"format": _FORMAT, "swarm": swarm, "robots": arms_of_robots}, indent=1)
     with whole(path) as file:
         file.write_text(text, encoding="utf-8")
 
 
 def _without_nan(arm: Mapping[str, Any]) -> dict[str, Any]:
-    # JSON has no NaN, the Q of an arm that was never tried.
+    # JSON has no NaN, which is the Q of an untried arm.
     return {**arm, "q": arm["q"] if arm["count"] > 0 else None}
 
 
@@ -134,7 +140,7 @@ def check_arms(arms: Sequence[Mapping[str, Any]]) -> None:
     Raises
     ------
     InputError, KeyError, TypeError
-        If they are not as those of `kswarms.agents.policies.learner.Learner.snapshot`.
+        If they are not as in `Learner.snapshot`.
     """
     for arm in arms:
         _SavedArm(**_without_nan(arm))
@@ -146,7 +152,7 @@ def load(path: Path) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If there is no such file, or it is none of ours.
+        If there is no such file, or it is damaged or of another format.
     """
     try:
         return _load(path, path.stat().st_mtime_ns)

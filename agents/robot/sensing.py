@@ -9,9 +9,9 @@ from typing import Final
 
 import numpy as np
 
+from kswarms.agents.body import SENSORS
 from kswarms.agents.common.arrays import Floats, Integers
 from kswarms.agents.common.jit import compiled
-from kswarms.agents.robot.body import SENSORS
 
 SECTOR: Final = 2.0 * math.pi / SENSORS
 """Angle covered by one sensor (rad)."""

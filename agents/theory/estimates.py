@@ -3,7 +3,7 @@
 The weight of program time has been divided by β_i, so that results are in seconds.
 """
 
-from kswarms.agents.robot.body import SENSORS
+from kswarms.agents.body import SENSORS
 
 
 def sigma(inter: bool, direction: int) -> int:

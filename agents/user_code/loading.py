@@ -1,7 +1,6 @@
-"""Classes from outside the package, named in a text: ``my_file.py:MyPolicy`` or ``package.module:MyPolicy``.
+"""Loading of user-defined classes, named in texts: ``my_file.py:MyPolicy`` or ``package.module:MyPolicy``.
 
-The text alone says where a class comes from, so every process that reads it finds the class by itself. Naming
-a class executes the code of its file, with all rights of the user who does so.
+The reference is enough for any process to load the class. Loading a class executes the code of its file.
 """
 
 import contextlib
@@ -19,38 +18,38 @@ from typing import Any, Final
 
 from kswarms.agents.common.errors import InputError
 
-_NOT_THE_USERS: Final = (f"{Path(__file__).parents[2]}/", sys.prefix, sys.base_prefix, "<frozen")
-"""Where code lies whose line would not help a user to find the mistake."""
+_NO_USER_CODE: Final = (f"{Path(__file__).parents[2]}/", sys.prefix, sys.base_prefix, "<frozen")
+"""Beginnings of paths whose lines are not shown as the place of an error in user code."""
 
 
 def is_reference(name: str) -> bool:
-    """Tell whether a name means a class from outside; no name of the package has a colon."""
+    """Return whether a name refers to a user-defined class; names of the package have no colon."""
     return ":" in name
 
 
 def load_class(field: str, reference: str, base: type | None = None) -> type[Any]:
     """Return the class that a reference names.
 
-    A file is executed once in a process for each content that it has; a module is imported as Python
-    does, from the current directory too.
+    A file is executed once per process and content. A module is imported; the current directory is searched
+    too.
 
     Parameters
     ----------
     field : str
-        What the class is for, to be named in an error.
+        Name of the field, for errors.
     reference : str
         ``path/to/my_file.py:MyPolicy``, the path relative to the current directory, or
         ``package.module:MyPolicy``.
     base : type, optional
-        What it must be a subclass of, with all abstract methods defined.
+        Required base class, all of whose abstract methods must be defined.
 
     Raises
     ------
     InputError
-        If there is no such file, module or class, its code fails, or it is no such subclass.
+        If the file, module or class does not exist, its code fails, or it is not such a subclass.
     """
     where, name = _split(field, reference)
-    module = _module_of(field, reference, where)
+    module = _load_module(field, reference, where)
     found = getattr(module, name, None)
     if not inspect.isclass(found):
         classes = (key for key, value in vars(module).items() if inspect.isclass(value))
@@ -65,10 +64,29 @@ def load_class(field: str, reference: str, base: type | None = None) -> type[Any
     return found
 
 
-def sources(field: str, reference: str) -> list[Path]:
-    """Return the files whose code a reference stands for.
+def reference_to(kind: Any) -> str | None:
+    """Return the reference from which `load_class` loads a class in another process; none if there is none.
 
-    That is the file that it names, or the module's, or all Python files of the package that the module is in.
+    A class of an imported module is ``package.module:MyPolicy``. A class of a script, or of a file loaded by
+    `load_class`, is ``path/to/my_file.py:MyPolicy``.
+    """
+    module = sys.modules.get(getattr(kind, "__module__", ""))
+    name = getattr(kind, "__qualname__", "")
+    if module is None or not inspect.isclass(kind) or getattr(module, name, None) is not kind:
+        return None
+    if module.__spec__ is not None:
+        return f"{module.__spec__.name}:{name}"
+    path = Path(getattr(module, "__file__", None) or "").absolute()
+    if path.suffix != ".py":
+        return None  # an interactive session
+    where = path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path
+    return f"{where}:{name}"
+
+
+def sources(field: str, reference: str) -> list[Path]:
+    """Return the files with the code of a reference.
+
+    These are the named file, or the module's file, or all Python files of the module's package.
 
     Raises
     ------
@@ -78,7 +96,7 @@ def sources(field: str, reference: str) -> list[Path]:
     where, _ = _split(field, reference)
     if where.endswith(".py"):
         return [Path(where)]
-    module = _module_of(field, reference, where)
+    module = _load_module(field, reference, where)
     folders = getattr(sys.modules[where.partition(".")[0]], "__path__", None)
     if folders is None:
         return [Path(str(module.__file__))]
@@ -86,33 +104,31 @@ def sources(field: str, reference: str) -> list[Path]:
 
 
 @contextlib.contextmanager
-def blaming(field: str, reference: str, what: str) -> Iterator[None]:
-    """Turn whatever code from outside raises into one line that tells where; faults of the package pass.
+def user_errors(field: str, reference: str, what: str) -> Iterator[None]:
+    """Re-raise errors of user code as `InputError` with file and line.
 
     Parameters
     ----------
     field, reference : str
-        What the code is for, and where it is; a name of the package's own changes nothing.
+        Name of the field and of the user-defined class.
     what : str
-        What is being done, as the beginning of a sentence, for example ``choose(0)``.
+        The operation, as the subject of the message.
 
     Raises
     ------
     InputError
-        If the code in the context raises; its own ones pass.
+        If the code in the context raises. An `InputError` is passed on.
     """
     try:
         yield
     except InputError:
         raise
     except (Exception, SystemExit) as error:
-        if not is_reference(reference):
-            raise
         cause = " ".join(f"{type(error).__name__}: {error}".rstrip(": ").split())
-        if not isinstance(error, SyntaxError):  # which tells its line itself
+        if not isinstance(error, SyntaxError):  # its message has the line
             frames = traceback.extract_tb(error.__traceback__)
-            theirs = [frame for frame in frames if not frame.filename.startswith(_NOT_THE_USERS)]
-            place = (theirs or frames)[-1]
+            user_frames = [frame for frame in frames if not frame.filename.startswith(_NO_USER_CODE)]
+            place = (user_frames or frames)[-1]
             if not place.filename.startswith("<"):
                 cause += f" ({Path(place.filename).name}, line {place.lineno})"
         raise InputError(field, reference, f"{what} raises {cause}") from error
@@ -125,33 +141,33 @@ def _split(field: str, reference: str) -> tuple[str, str]:
     return where, name
 
 
-def _module_of(field: str, reference: str, where: str) -> ModuleType:
+def _load_module(field: str, reference: str, where: str) -> ModuleType:
     if where.endswith(".py"):
         path = Path(where)
         try:
             path = path.resolve()
             source = path.read_bytes()
-        except ValueError as error:  # of a NUL, which is not printed
+        except ValueError as error:  # a NUL character
             raise InputError(field, reference, f"must name a file ({error})") from None
         except OSError as error:
             reason = error.strerror or "unreadable"
             raise InputError(field, reference, f"must name a file; {path}: {reason}") from None
-        with blaming(field, reference, f"importing {path.name}"):
-            return _executed(path, source)
+        with user_errors(field, reference, f"importing {path.name}"):
+            return _execute(path, source)
     directory = str(Path.cwd())
     if directory not in sys.path and "" not in sys.path:
-        sys.path.append(directory)  # a command, unlike `python -m`, does not look there
-    with blaming(field, reference, f"importing {where}"):
+        sys.path.append(directory)  # console scripts, unlike `python -m`, do not search it
+    with user_errors(field, reference, f"importing {where}"):
         return importlib.import_module(where)
 
 
 @lru_cache(maxsize=64)
-def _executed(path: Path, source: bytes) -> ModuleType:
-    """Execute a file as a module, anew only if its content has changed."""
-    named = hashlib.sha256(str(path).encode()).hexdigest()[:8]
-    module = ModuleType("_".join(("user", re.sub(r"\W", "_", path.stem), named)))
+def _execute(path: Path, source: bytes) -> ModuleType:
+    """Execute a file as a module, again only if its content has changed."""
+    digest = hashlib.sha256(str(path).encode()).hexdigest()[:8]
+    module = ModuleType("_".join(("user", re.sub(r"\W", "_", path.stem), digest)))
     module.__file__ = str(path)
-    # Pickle, dataclasses and pydantic look for a class's module there.
+    # Pickle, dataclasses and pydantic look up the module of a class there.
     sys.modules[module.__name__] = module
     try:
         exec(compile(source, str(path), "exec"), vars(module))

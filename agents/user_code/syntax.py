@@ -1,4 +1,4 @@
-"""Names with arguments, as users write them: ``ucb``, ``wlu(delta=0.145)``, ``learner(rule="greedy")``."""
+"""Names with arguments in texts: ``ucb``, ``wlu(delta=0.145)``, ``learner(rule="greedy")``."""
 
 import ast
 from collections.abc import Collection, Mapping
@@ -6,32 +6,36 @@ from typing import Any, NamedTuple, TypeVar
 
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.user_code.loading import blaming, is_reference, load_class
+from kswarms.agents.user_code.loading import is_reference, load_class, user_errors
 
 _Thing = TypeVar("_Thing", bound=Checked)
 
 
 class Call(NamedTuple):
-    """A name and the keyword arguments that go with it."""
+    """A name with keyword arguments; printing it gives the text."""
 
     name: str
     arguments: dict[str, Any]
 
+    def __str__(self) -> str:
+        inside = ", ".join(f"{key}={value!r}" for key, value in self.arguments.items())
+        return f"{self.name}({inside})" if inside else self.name
+
 
 def parse_call(field: str, text: str) -> Call:
-    """Read ``name`` or ``name(key=value, …)``; the values are Python literals.
+    """Parse ``name`` or ``name(key=value, …)``, where the values are Python literals.
 
     Parameters
     ----------
     field : str
-        What the text is for, to be named in an error.
+        Name of the field, for errors.
     text : str
         For example ``wlu(delta={1: 0.02, 3: 0.125})``.
 
     Raises
     ------
     InputError
-        If the text has another form.
+        If the text cannot be parsed.
 
     Examples
     --------
@@ -55,59 +59,56 @@ def parse_call(field: str, text: str) -> Call:
     return Call(name.strip(), arguments)
 
 
+def is_literal(value: Any) -> bool:
+    """Return whether a value can be written in a text and parsed from it."""
+    try:
+        return bool(ast.literal_eval(repr(value)) == value)
+    except (SyntaxError, ValueError, TypeError, RecursionError, MemoryError):
+        return False
+
+
 def build(field: str, text: str, known: Mapping[str, type[_Thing]], base: type) -> _Thing:
     """Build the object that a text describes.
 
     Parameters
     ----------
     field : str
-        What it is for, to be named in an error.
+        Name of the field, for errors.
     text : str
         Name of one of `known` or reference to a user-defined class, with arguments.
     known : mapping of str to type
         The classes by name.
     base : type
-        What a class from outside must be a subclass of.
+        Base class that a user-defined class must have.
 
     Raises
     ------
     InputError
-        If the name is unknown or an argument not allowed.
+        If the name is unknown or an argument is not allowed.
     """
     call = parse_call(field, text)
-    if is_reference(call.name):
-        kind: type[_Thing] = load_class(field, call.name, base)
-    elif call.name in known:
+    if call.name in known:
         kind = known[call.name]
+    elif is_reference(call.name):
+        kind = load_class(field, call.name, base)
     else:
-        raise InputError(
-            field, call.name, f"must be one of {', '.join(known)}, or a class as my_file.py:MyClass"
-        )
-    require_known(field, call, tuple(kind.model_fields))
-    with blaming(field, call.name, "its constructor"):
-        try:
-            return kind(**call.arguments)
-        except InputError as error:
-            raise InputError(f"{field}.{error.field}", error.value, error.allowed) from None
+        allowed = f"must be one of {', '.join(known)}, or a class as my_file.py:MyClass"
+        raise InputError(field, call.name, allowed)
+    require_known(field, call.arguments, kind.model_fields)
+    with user_errors(field, call.name, "its constructor"), InputError.within(field):
+        return kind(**call.arguments)
 
 
-def require_known(field: str, call: Call, allowed: Collection[str]) -> None:
-    """Refuse a call with an argument that is not among `allowed`.
-
-    Raises
-    ------
-    InputError
-        If there is one.
-    """
-    for name, value in call.arguments.items():
+def require_known(field: str, arguments: Mapping[str, Any], allowed: Collection[str]) -> None:
+    """Raise an `InputError` if an argument is not among `allowed`."""
+    for name, value in arguments.items():
         if name not in allowed:
-            raise InputError(
-                f"{field}.{name}", value, f"no such field; there are {', '.join(allowed) or 'none'}"
-            )
+            names = ", ".join(allowed) or "none"
+            raise InputError(f"{field}.{name}", value, f"no such field; there are {names}")
 
 
 def split_outside(text: str, separator: str) -> list[str]:
-    """Split a text at a separator, but not within brackets or quotes, and strip the parts.
+    """Split a text at a separator outside brackets and quotes, and strip the parts.
 
     Examples
     --------

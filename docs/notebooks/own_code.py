@@ -20,7 +20,7 @@ import pandas as pd
 import seaborn as sns
 
 from kswarms.agents.conformance import POLICY_CHECKS, REWARD_CHECKS, RULE_CHECKS
-from kswarms.agents.policies.registry import make_policy
+from kswarms.agents.policies.spec import make_policy
 from kswarms.agents.user_code.loading import load_class
 from kswarms.model.foraging import ForagingModel
 from kswarms.model.recorder import policy_rows

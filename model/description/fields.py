@@ -5,9 +5,9 @@ from typing import Any, Final, Literal, get_args
 from pydantic import Field, model_validator
 
 from kswarms.agents.actions import LONGEST, Action
+from kswarms.agents.body import BODIES, Body
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.robot.body import BODIES, Body
 from kswarms.model.description.parameters import FARTHEST, PRESETS, Parameters, parse_parameters
 
 Layout = Literal["symmetric", "nearer-station", "random-stations"]
@@ -26,7 +26,7 @@ class SwarmFields(Checked):
     Attributes
     ----------
     policy : str
-        Policy of its robots, or several, dealt out (see `kswarms.agents.policies.registry.deal`).
+        Policy of its robots, or several, dealt out (see `kswarms.agents.policies.spec.deal`).
     drive, drive_action : float
         Drive command in state P and in state A, as a fraction of the top speed.
     """
@@ -50,7 +50,7 @@ class GameFields(Checked):
     side : float
         Side of the arena (m).
     body : Body
-        Body of the robots, or the name of one of `kswarms.agents.robot.body.BODIES`.
+        Body of the robots, or the name of one of `kswarms.agents.body.BODIES`.
     parameters : Parameters
         Free parameters of the world, or their text (see `parse_parameters`).
     actions : tuple of Action

@@ -14,9 +14,10 @@ from pydantic import (
 
 from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.conformance.trial import try_policy
 from kswarms.agents.policies.interface import Setting
-from kswarms.agents.policies.registry import ALIASES, POLICIES, make_policy, parts
-from kswarms.agents.policies.user_policy import rehearse
+from kswarms.agents.policies.registry import ALIASES, POLICIES
+from kswarms.agents.policies.spec import parse_policies
 from kswarms.agents.streams import Streams
 from kswarms.model.description.arena import Arena, build_arena
 from kswarms.model.description.fields import GameFields, SwarmFields
@@ -105,8 +106,8 @@ class Game(GameFields):
                 raise InputError("actions", name, "must not have the name of a policy")
         for k, swarm in enumerate(self.swarms):
             setting = Setting(k, len(self.swarms), actions, Streams(0, 0))
-            for text in parts(swarm.policy):
-                rehearse(text, make_policy(text, setting), setting)
+            for spec in parse_policies(swarm.policy):
+                try_policy(spec, setting)
 
     def _check_motion(self) -> None:
         parameters, body = self.parameters, self.body

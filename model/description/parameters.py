@@ -21,7 +21,7 @@ class Parameters(Checked):
     """Free parameters of the world: fixed neither by the thesis nor by the public simulator.
 
     The defaults are fitted to Table 6.1. Distances are for the body in the simulator's scale; sensing
-    distances of another body are scaled by its `kswarms.agents.robot.body.Body.sensing_scale`.
+    distances of another body are scaled by its `kswarms.agents.body.Body.sensing_scale`.
 
     Attributes
     ----------

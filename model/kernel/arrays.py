@@ -4,7 +4,7 @@ from typing import Final
 
 import numpy as np
 
-from kswarms.agents.robot.body import SENSORS
+from kswarms.agents.body import SENSORS
 
 WORLD: Final = np.dtype(
     [

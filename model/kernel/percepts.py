@@ -9,9 +9,9 @@ from typing import Final
 
 import numpy as np
 
+from kswarms.agents.body import SENSORS
 from kswarms.agents.common.arrays import Floats, Integers, Records
 from kswarms.agents.common.jit import compiled
-from kswarms.agents.robot.body import SENSORS
 from kswarms.agents.robot.sensing import sense, walls_met, wrap
 from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, HOMING_ERROR, LEG, LEG_OVER, TURN
 from kswarms.model.kernel.neighbours import within

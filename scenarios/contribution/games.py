@@ -15,7 +15,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.agents.learning.rewards import WLU, Reward
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.learner import Learner
-from kswarms.agents.policies.registry import deal, make_policy
+from kswarms.agents.policies.spec import PolicySpec, deal
 from kswarms.agents.streams import Streams
 from kswarms.model.description.game import Game
 from kswarms.scenarios.catalogue.selecting import words
@@ -186,16 +186,16 @@ def _measure(run: Run, outcome: Outcome, rewards: Sequence[Reward], time_sud: Ti
     return measured
 
 
-def _policies(game: Game) -> list[tuple[int, str]]:
+def _policies(game: Game) -> list[tuple[int, PolicySpec]]:
     """Return swarm (from 0) and policy of every robot."""
-    return [(k, name) for k, swarm in enumerate(game.swarms) for name in deal(swarm.policy, swarm.size)]
+    return [(k, spec) for k, swarm in enumerate(game.swarms) for spec in deal(swarm.policy, swarm.size)]
 
 
 def _rewards(game: Game) -> list[Reward]:
     """Return the reward of every robot: a learner's own, WLU for other policies."""
     rewards = []
-    for k, name in _policies(game):
-        policy = make_policy(name, Setting(k, len(game.swarms), game.action_set, Streams(0, 0)))
+    for k, spec in _policies(game):
+        policy = spec.build(Setting(k, len(game.swarms), game.action_set, Streams(0, 0)))
         rewards.append(policy.reward if isinstance(policy, Learner) else WLU())
     return rewards
 
@@ -209,7 +209,7 @@ def _compare(game: Game, robot: int, full: _Measured, without: _Measured) -> dic
         "run_without": without.run,
         "robot": robot,
         "swarm": swarm + 1,
-        "policy": policy,
+        "policy": str(policy),
         "sud": full.sud[swarm],
         "sud_without": without.sud[swarm],
         "time_sud": full.time_sud[swarm],

@@ -5,8 +5,8 @@ from typing import Any, Final
 
 from pydantic import Field
 
+from kswarms.agents.body import BODIES
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.robot.body import BODIES
 from kswarms.model.description.fields import GameFields, SwarmFields
 from kswarms.model.description.game import Game, Swarm, apportion
 from kswarms.model.description.parameters import text_of

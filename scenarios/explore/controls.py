@@ -6,11 +6,11 @@ from typing import Any, Final
 
 import solara
 
+from kswarms.agents.body import BODIES
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.learning.rewards import REWARDS
 from kswarms.agents.learning.selection_rules import RULES
 from kswarms.agents.policies.registry import ALIASES, POLICIES
-from kswarms.agents.robot.body import BODIES
 from kswarms.analysis.colours import swarm_colour
 from kswarms.model.description.fields import LAYOUTS
 from kswarms.model.description.parameters import Parameters, parse_parameters

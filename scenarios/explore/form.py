@@ -6,8 +6,8 @@ from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.learning.rewards import REWARDS
 from kswarms.agents.learning.selection_rules import RULES
-from kswarms.agents.policies.registry import parts
-from kswarms.agents.user_code.syntax import parse_call
+from kswarms.agents.policies.spec import parse_policies
+from kswarms.agents.user_code.syntax import Call
 from kswarms.model.description.game import Game
 from kswarms.model.description.parameters import parse_parameters, text_of
 from kswarms.scenarios.description.condition import Condition, SwarmRule
@@ -153,26 +153,22 @@ class Learning(NamedTuple):
 
 
 def learning_of(policies: list[str]) -> Learning | None:
-    """Return what the first learner among some policies learns by, none if there is none that can be read."""
-    for text in (part for policy in policies for part in parts(policy)):
+    """Return how the first learner among some policies learns; none if no learner can be parsed."""
+    for policy in policies:
         try:
-            call = parse_call("policy", text)
-            if call.name in _LEARNERS:
-                reward = parse_call("reward", call.arguments.get("reward", "wlu"))
-                rule = parse_call("rule", call.arguments.get("rule", "ucb"))
-                delta, gamma = (
-                    _number(kinds[each.name].model_fields, each.arguments, name)
-                    if each.name in kinds
-                    else None
-                    for kinds, each, name in ((REWARDS, reward, "delta"), (RULES, rule, "gamma"))
-                )
-                return Learning(reward.name, rule.name, delta, gamma)
+            for spec in parse_policies(policy):
+                reward, rule = spec.learns_by("reward"), spec.learns_by("rule")
+                if reward is not None and rule is not None:
+                    delta, gamma = (
+                        _number(kinds[call.name].model_fields, call.arguments, name)
+                        if call.name in kinds
+                        else None
+                        for kinds, call, name in ((REWARDS, reward, "delta"), (RULES, rule, "gamma"))
+                    )
+                    return Learning(reward.name, rule.name, delta, gamma)
         except InputError:
             continue
     return None
-
-
-_LEARNERS: Final = ("learner", "inter-learner", "intra-learner")
 
 
 def _number(fields: Any, arguments: dict[str, Any], name: str) -> float | None:
@@ -188,29 +184,22 @@ def with_learning(policy: str, part: str, name: str = "", **arguments: float) ->
     policy : str
         A policy, or several joined by ``+``.
     part : {'reward', 'rule'}
-        What is changed.
+        The part to change.
     name : str
-        Name of the new reward or rule, with no arguments; empty to keep it.
+        Name of the new reward or rule, without arguments; empty to keep the current one.
     **arguments
-        Arguments that it gets besides those that it has.
+        Arguments to add or change.
 
     Examples
     --------
     >>> with_learning("inter-learner(rule='greedy')", "reward", delta=0.2)
     "inter-learner(rule='greedy', reward='wlu(delta=0.2)')"
     """
-    changed: list[str] = []
-    for text in parts(policy):
-        call = parse_call("policy", text)
-        if call.name in _LEARNERS:
-            own = parse_call(part, call.arguments.get(part, {"reward": "wlu", "rule": "ucb"}[part]))
-            inner = _write(name, {}) if name else _write(own.name, own.arguments | arguments)
-            text = _write(call.name, call.arguments | {part: inner})
-        changed.append(text)
-    return policy if changed == parts(policy) else "+".join(changed)
-
-
-def _write(name: str, arguments: dict[str, Any]) -> str:
-    """Write a call as `kswarms.agents.user_code.syntax.parse_call` reads it."""
-    inside = ", ".join(f"{key}={value!r}" for key, value in arguments.items())
-    return f"{name}({inside})" if inside else name
+    specs = parse_policies(policy)
+    changed = []
+    for spec in specs:
+        if (call := spec.learns_by(part)) is not None:
+            inner = Call(name, {}) if name else Call(call.name, call.arguments | arguments)
+            spec = spec.with_arguments(**{part: str(inner)})
+        changed.append(spec)
+    return policy if changed == [*specs] else "+".join(map(str, changed))

@@ -10,8 +10,7 @@ from typing import Final
 
 from kswarms import __version__
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.policies.registry import parts
-from kswarms.agents.policies.user_policy import files
+from kswarms.agents.policies.spec import parse_policies
 from kswarms.model.description.game import Game
 from kswarms.scenarios.description.condition import Condition
 from kswarms.scenarios.description.scenario import Scenario
@@ -119,7 +118,8 @@ def _file_hashes(game: Game) -> list[str]:
 
 def _files(game: Game) -> list[Path]:
     """Return the files of learned policies and user code that a game loads."""
-    return [file for swarm in game.swarms for text in parts(swarm.policy) for file in files(text)]
+    specs = (spec for swarm in game.swarms for spec in parse_policies(swarm.policy))
+    return [file for spec in specs for file in spec.files()]
 
 
 def require_unchanged(run: Run) -> None:

@@ -7,8 +7,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from kswarms.agents.body import SENSORS
 from kswarms.agents.policies.learner import Learner
-from kswarms.agents.robot.body import SENSORS
 from kswarms.agents.robot.sensing import sense
 from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, IDLE, LEG, LEG_OVER, TURN
 from kswarms.model.game_model import GameModel

@@ -9,7 +9,7 @@ import pytest
 from kswarms.agents.conformance import POLICY_CHECKS, REWARD_CHECKS, RULE_CHECKS
 from kswarms.agents.learning.rewards import WLU
 from kswarms.agents.learning.selection_rules import Greedy
-from kswarms.agents.policies.registry import make_policy
+from kswarms.agents.policies.spec import make_policy
 from kswarms.agents.user_code.loading import load_class
 
 Check = Callable[[Any], None]
@@ -55,10 +55,10 @@ class Unequal(Greedy):
 
 
 def test_a_failed_check_says_what_is_wrong() -> None:
-    rewards, rules = ({check.__name__: check for check in some} for some in (REWARD_CHECKS, RULE_CHECKS))
-    with pytest.raises(AssertionError, match="it is changed by its use"):
-        rewards["check_it_is_frozen"](Restless)
-    with pytest.raises(AssertionError, match=r"of\(.*\) is another"):
-        rewards["check_the_same_conflict_brings_the_same"](Restless)
+    rewards, rules = ({check.__name__: check for check in checks} for checks in (REWARD_CHECKS, RULE_CHECKS))
+    with pytest.raises(AssertionError, match="its use changes it"):
+        rewards["check_frozen"](Restless)
+    with pytest.raises(AssertionError, match=r"of\(.*\) differs"):
+        rewards["check_same_conflict_gives_same_reward"](Restless)
     with pytest.raises(AssertionError, match="another is not equal"):
-        rules["check_copies_are_equal_and_choose_alike"](Unequal)
+        rules["check_copies"](Unequal)

@@ -18,16 +18,15 @@ import pytest
 
 from kswarms.agents.actions import AWAY, Action
 from kswarms.agents.conformance import POLICY_CHECKS
-from kswarms.agents.conformance.policies import GAMES, TWO, live, setting
+from kswarms.agents.conformance.policies import TWO, play_conflicts, setting, settings
 from kswarms.agents.learning.rewards import REWARDS
 from kswarms.agents.learning.selection_rules import RULES
 from kswarms.agents.policies.interface import Policy, Setting
 from kswarms.agents.policies.learner import Learner
-from kswarms.agents.policies.registry import POLICIES, make_policy
+from kswarms.agents.policies.registry import POLICIES
 from kswarms.agents.policies.saved import save
+from kswarms.agents.policies.spec import Factory, make_policy
 from kswarms.agents.streams import Purpose
-
-Build = Callable[[Setting], Policy]
 
 ARGUMENTS = {"learned": "(file={file!r})"}
 """What a policy cannot be built without."""
@@ -38,31 +37,31 @@ TEXTS = [
 ]
 
 
-def check_repr_tells_the_swarm_and_no_address(build: Build) -> None:
+def check_repr_tells_the_swarm_and_no_address(build: Factory) -> None:
     text = repr(build(setting(swarm=1)))
     assert "swarm=1" in text
     assert " at 0x" not in text
     assert len(text.splitlines()) == 1
 
 
-def check_a_stopped_learner_is_deaf(build: Build) -> None:
+def check_a_stopped_learner_is_deaf(build: Factory) -> None:
     """Even told, it keeps to what it knows, and has nothing to answer."""
-    for swarm, swarms, actions in GAMES:
-        policy = build(setting(swarm, swarms, actions))
+    for where in settings():
+        policy = build(where)
         if not hasattr(policy, "learn"):
             continue
         assert isinstance(policy, Learner)
-        assert live(policy, swarms)
+        assert play_conflicts(policy, where)
         known = repr(policy.snapshot())
         policy.freeze()
-        told = live(policy, swarms, conflicts=40)[1::2]
+        told = play_conflicts(policy, where, conflicts=40)[1::2]
         assert repr(policy.snapshot()) == known
         assert all(math.isnan(number) for entry in told for number in entry)
 
 
-def check_copies_look_alike(build: Build) -> None:
-    policy = build(setting())
-    live(policy, 2, conflicts=17)
+def check_copies_look_alike(build: Factory) -> None:
+    policy = build(where := setting())
+    play_conflicts(policy, where, conflicts=17)
     assert repr(copy.deepcopy(policy)) == repr(pickle.loads(pickle.dumps(policy))) == repr(policy)
 
 
@@ -129,8 +128,8 @@ class Unstoppable(Learner):
         pass
 
 
-Check = Callable[[Build], None]
-CHECKS: Final[dict[Check, Build]] = {
+Check = Callable[[Factory], None]
+CHECKS: Final[dict[Check, Factory]] = {
     **dict(
         zip(POLICY_CHECKS, (Outsider, Unseeded, Hive, Unpicklable, Greedy, Unstoppable), strict=True)
     ),
@@ -146,8 +145,8 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[int, str]:
     """Return files of learned policies, for each swarm that a robot may be of."""
     folder, paths = tmp_path_factory.mktemp("learned"), {}
     for swarm in range(3):
-        learner = Learner(setting(swarm))
-        live(learner, 2)
+        learner = Learner(where := setting(swarm))
+        play_conflicts(learner, where)
         paths[swarm] = str(Path(folder, f"swarm-{swarm + 1}.json"))
         save(Path(paths[swarm]), swarm + 1, [learner.snapshot()])
     return paths

@@ -13,7 +13,7 @@ from numpy.random import Generator
 
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.conformance import RULE_CHECKS
-from kswarms.agents.conformance.rules import ARMS, draws, play, tried
+from kswarms.agents.conformance.rules import ARMS, choose_arms, draws
 from kswarms.agents.learning.bandit import Bandit
 from kswarms.agents.learning.selection_rules import RULES, UCB, Greedy, Rule, UniformRandom, make_rule
 
@@ -21,9 +21,19 @@ IGNORES_WHAT_IT_KNOWS: Final = {"uniform-random"}
 """Rules that may take a tried arm though others were not, by their own definition (section 1.5)."""
 
 
+def tried(values: list[float]) -> Bandit:
+    """Return a bandit that tried every arm equally often, with these values of Q."""
+    bandit = Bandit(len(values))
+    for arm, value in enumerate(values):
+        for _ in range(8):
+            bandit.update(arm, 10.0 * value, 10.0)
+    bandit.choices = 8 * len(values)
+    return bandit
+
+
 def check_it_is_built_from_its_name(rule: type[Rule]) -> None:
     name = next((name for name, known in RULES.items() if known is rule), None)
-    built = make_rule(name, arms=2) if name else rule()
+    built = make_rule(name) if name else rule()
     assert type(built) is rule
     assert built == rule()
 
@@ -45,7 +55,7 @@ def check_every_arm_is_reachable(rule: type[Rule]) -> None:
 def check_arms_never_tried_come_first(rule: type[Rule]) -> None:
     for arms in ARMS:
         for seed in range(40):
-            assert sorted(play(rule(), arms, seed)[:arms]) == list(range(arms))
+            assert sorted(choose_arms(rule(), arms, seed)[:arms]) == list(range(arms))
 
 
 def check_the_first_of_all_is_random(rule: type[Rule]) -> None:
@@ -159,7 +169,7 @@ CHECKS: Final[dict[Check, type[Rule]]] = {
     check_the_first_of_all_is_random: First,
     check_ties_are_broken_by_the_robots_own_stream: FirstOfEquals,
     **dict(
-        zip(RULE_CHECKS, (Moody, Thawed, Lenient, Unseeded, OneTooFar, Meddler, Inflating), strict=True)
+        zip(RULE_CHECKS, (Moody, Thawed, Lenient, Unseeded, OneTooFar), strict=True)
     ),
 }
 """Every check, with a rule that must not pass it."""

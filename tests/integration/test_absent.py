@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kswarms.agents.robot.body import KREMBOT
+from kswarms.agents.body import KREMBOT
 from kswarms.agents.robot.state import Fleet
 from kswarms.agents.streams import Purpose
 from kswarms.model.description.game import Game, Swarm

@@ -31,7 +31,7 @@ class Faulty:
 
     def choose(self, opponent):
         self.asked += 1
-        if self.asked > 8:  # the trial asks fewer times
+        if self.asked > 8:  # the trial has fewer conflicts
             FAULT
         return self.actions[0]
 """
@@ -116,11 +116,11 @@ def test_a_rule_that_chooses_what_is_no_arm_fails_the_run(arm: str) -> None:
     assert failed == [f"InputError: rule={arm}: must choose 0 to 1"] * 2
 
 
-def test_a_rule_that_breaks_the_bandit_is_told_before_the_game(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_rule_that_changes_the_bandit_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     Path("faulty.py").write_text(RULE.replace("return", "bandit.count.clear(); return"))
     Path("mine.toml").write_text(SCENARIO.replace("POLICY", "inter-learner(rule='faulty.py:Faulty')"))
     assert invoke(RUN) == 2
-    assert "rule='faulty.py:Faulty': choose(…) " in capsys.readouterr().err
+    assert "rule='faulty.py:Faulty': choose(…) must not change the bandit" in capsys.readouterr().err
     assert not Path("results").exists()
 
 
@@ -129,7 +129,7 @@ def test_what_a_policy_says_that_it_learned_must_be_of_the_game(opponent: int, a
     arm = {"opponent": opponent, "action": action, "reward": 1.0, "time": 1.0, "count": 1.0, "q": 1.0}
     told = f"    def snapshot(self):\n        return [{arm}]\n"
     Path("faulty.py").write_text(POLICY.replace("FAULT", "pass") + "\n" + told)
-    with pytest.raises(InputError, match=r"snapshot\(\) must tell of the game's actions and swarms, not "):
+    with pytest.raises(InputError, match=r"snapshot\(\) must describe the game's actions and swarms, not "):
         ForagingModel(n=4, policies="avoid,faulty.py:Faulty")
 
 

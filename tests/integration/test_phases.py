@@ -11,7 +11,7 @@ import pytest
 from simpy.core import StopSimulation
 
 from kswarms.agents.actions import AWAY, TOWARDS, Action
-from kswarms.agents.policies.registry import describe
+from kswarms.agents.policies.saved import snapshot_of
 from kswarms.agents.robot.state import ACTION
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.description.parameters import PRESETS
@@ -169,9 +169,9 @@ def test_an_action_under_way_is_split_at_the_switch() -> None:
 def test_after_the_switch_nothing_is_learned_or_explored(policy: str) -> None:
     what = game("attack", policy)
     model = at_the_switch(what)
-    learned = repr([describe(robot.policy) for robot in model.robots])
+    learned = repr([snapshot_of(robot.policy) for robot in model.robots])
     model.play()
-    assert repr([describe(robot.policy) for robot in model.robots]) == learned
+    assert repr([snapshot_of(robot.policy) for robot in model.robots]) == learned
     played = [row for row in rows_of(model, "game") if row["swarm"] == 2]
     assert len(played) > 30
     assert all(math.isnan(row["reward"]) and math.isnan(row["q"]) for row in played)
@@ -179,7 +179,7 @@ def test_after_the_switch_nothing_is_learned_or_explored(policy: str) -> None:
     for row in played:
         arms = [
             arm
-            for arm in describe(model.robots[row["robot"]].policy)
+            for arm in snapshot_of(model.robots[row["robot"]].policy)
             if arm["opponent"] == row["opponent_swarm"] and arm["count"] > 0
         ]
         best = max(arms, key=lambda arm: arm["q"])["action"] if arms else "flight"
@@ -192,7 +192,7 @@ def test_without_data_the_learned_action_is_flight() -> None:
     """A learning too short for any conflict to be closed in it."""
     what = game("attack", "learner", learning=0.1, actions=tuple(reversed(PRESETS["fitted"].actions())))
     model = play(what)
-    assert all(arm["count"] == 0 for robot in model.members[1] for arm in describe(robot.policy))
+    assert all(arm["count"] == 0 for robot in model.members[1] for arm in snapshot_of(robot.policy))
     actions = [row["action"] for row in rows_of(model, "game") if row["swarm"] == 2]
     assert len(actions) > 50
     assert set(actions) == {"flight"}
@@ -212,7 +212,7 @@ def test_the_conflict_open_at_the_switch_gets_no_reward(seed: int) -> None:
     # And nobody's bandit counts it.
     for robot in model.members[1]:
         rewarded = sum(row["robot"] == robot.index for row in learned) - 1
-        assert sum(arm["count"] for arm in describe(robot.policy)) == rewarded
+        assert sum(arm["count"] for arm in snapshot_of(robot.policy)) == rewarded
 
 
 def test_the_first_conflict_of_the_measured_game_rewards_nothing() -> None:
@@ -300,7 +300,7 @@ def test_sampling_does_not_change_what_is_learned() -> None:
     seen = [GameModel(what, 2, record=record) for record in ("", "model,agents,conflicts")]
     for model in seen:
         model.play()
-    learned = [[describe(robot.policy) for robot in model.robots] for model in seen]
+    learned = [[snapshot_of(robot.policy) for robot in model.robots] for model in seen]
     assert repr(learned[0]) == repr(learned[1])
     assert world(seen[0]) == world(seen[1])
     assert seen[0].results() == seen[1].results()

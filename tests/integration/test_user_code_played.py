@@ -69,7 +69,7 @@ def test_a_mistake_in_it_is_one_line_and_nothing_is_written(capsys: pytest.Captu
     Path("cautious.py").write_text(code.replace("return self.flight", "return self.flee", 1))
     assert invoke(["run", "mine.toml", "--out", "results"]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert "policy='cautious.py:Cautious': choose(1) raises AttributeError: " in line
+    assert "policy='cautious.py:Cautious': its trial raises AttributeError: " in line
     assert "(cautious.py, line " in line
     assert not Path("results").exists()
 

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.distance import pdist
 
+from kswarms.agents.body import KREMBOT_SIM, SENSORS
 from kswarms.agents.common.arrays import Floats, Integers
-from kswarms.agents.robot.body import KREMBOT_SIM, SENSORS
 from kswarms.agents.robot.state import ACTION
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.description.parameters import PRESETS

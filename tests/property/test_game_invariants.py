@@ -11,7 +11,7 @@ from scipy.spatial.distance import pdist
 
 from kswarms.agents.actions import TOWARDS
 from kswarms.agents.policies.interface import Setting
-from kswarms.agents.policies.registry import make_policy
+from kswarms.agents.policies.spec import make_policy
 from kswarms.agents.robot.state import ACTION
 from kswarms.agents.streams import Streams
 from kswarms.model.description.game import Game, Swarm, apportion

@@ -9,8 +9,8 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
+from kswarms.agents.body import SENSORS
 from kswarms.agents.common.arrays import Floats, Integers
-from kswarms.agents.robot.body import SENSORS
 from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, HOMING_ERROR, LEG, LEG_OVER, TURN, Fleet
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 from kswarms.agents.actions import AWAY, TOWARDS, Action
+from kswarms.agents.body import BODIES, KREMBOT, KREMBOT_SIM, SENSORS, Body
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.robot.body import BODIES, KREMBOT, KREMBOT_SIM, SENSORS, Body
 from kswarms.agents.robot.controller import Habits
 
 

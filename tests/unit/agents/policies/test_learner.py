@@ -12,7 +12,8 @@ from kswarms.agents.actions import AWAY, TOWARDS, Action
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.learner import Learner
-from kswarms.agents.policies.registry import deal, describe, make_policy, parts
+from kswarms.agents.policies.saved import snapshot_of
+from kswarms.agents.policies.spec import deal, make_policy, parse_policies
 from kswarms.agents.streams import Purpose, Streams, stream
 
 FLIGHT = Action(name="flight", direction=AWAY, duration=1.8)
@@ -197,8 +198,8 @@ def test_a_snapshot_tells_all_that_is_known() -> None:
             *(bandit.reward[arm], bandit.time[arm], bandit.count[arm]),
         )
         assert row["q"] == bandit.value(arm) or (row["count"] == 0 and math.isnan(row["q"]))
-    assert repr(describe(policy)) == repr(rows)
-    assert describe(make_policy("avoid", setting())) == []
+    assert repr(snapshot_of(policy)) == repr(rows)
+    assert snapshot_of(make_policy("avoid", setting())) == []
 
 
 def test_copies_go_on_alike_and_apart() -> None:
@@ -231,8 +232,9 @@ def test_policies_draw_from_streams_of_their_own() -> None:
 
 def test_learners_are_dealt_out_like_any_policy() -> None:
     text = "inter-learner(reward='wlu(delta={1: 0.1, 2: 0.2}, b=1)')+avoid"
-    assert parts(text) == [text.removesuffix("+avoid"), "avoid"]
-    assert deal(text, 3) == [*2 * [text.removesuffix("+avoid")], "avoid"]
+    learner = text.removesuffix("+avoid")
+    assert [spec.text for spec in parse_policies(text)] == [learner, "avoid"]
+    assert [spec.text for spec in deal(text, 3)] == [learner, learner, "avoid"]
 
 
 def test_there_must_be_another_swarm_to_learn_about() -> None:

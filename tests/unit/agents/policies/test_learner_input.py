@@ -5,7 +5,7 @@ import pytest
 from kswarms.agents.actions import AWAY, TOWARDS, Action
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.interface import Setting
-from kswarms.agents.policies.registry import make_policy
+from kswarms.agents.policies.spec import make_policy
 from kswarms.agents.streams import Streams
 from kswarms.model.foraging import ForagingModel
 
@@ -18,7 +18,7 @@ SETTING = Setting(1, 2, ACTIONS, Streams(0, 0))
 # Policy, field, how the value looks, a part of what is allowed.
 WRONG = [
     ("lerner", "policy", "'lerner'", "inter-learner"),
-    ("", "policy", "''", "inter-learner"),
+    ("", "policy", "''", "at least 1 character"),
     ("learner(", "policy", "'learner('", "name(key=value, …)"),
     ("learner('wlu')", "policy", "\"learner('wlu')\"", "name(key=value, …)"),
     ("learner(about=inter)", "policy", "'learner(about=inter)'", "name(key=value, …)"),
@@ -90,7 +90,7 @@ def test_an_opponent_that_nothing_is_learned_about_is_refused(
 ) -> None:
     setting = SETTING._replace(swarm=1, swarms=2)
     make_policy(f"{about}(reward='wlu({name}={{{known}: 0.5}})')", setting)
-    with pytest.raises(InputError, match=f"names swarm {unknown}, which it learns nothing about"):
+    with pytest.raises(InputError, match=f"names swarm {unknown}, which is not learned about"):
         make_policy(f"{about}(reward='wlu({name}={{{unknown}: 0.5}})')", setting)
 
 

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kswarms.agents.actions import Action
+from kswarms.agents.body import BODIES, KREMBOT, Body
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.robot.body import BODIES, KREMBOT, Body
 from kswarms.model.description.fields import LAYOUTS
 from kswarms.model.description.game import Game, Swarm, apportion
 from kswarms.model.description.parameters import PRESETS

@@ -10,7 +10,7 @@ from kswarms.agents.learning.rewards import WLU, IndividualUtility, Reward, Sing
 from kswarms.agents.learning.selection_rules import UCB, DiscountedUCB, Greedy, PeriodicRandom, Rule
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.learner import Learner
-from kswarms.agents.policies.registry import make_policy
+from kswarms.agents.policies.spec import make_policy
 from kswarms.agents.streams import Streams
 from kswarms.model.description.parameters import text_of
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from kswarms.agents.actions import Action
+from kswarms.agents.body import KREMBOT
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.robot.body import KREMBOT
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.description.condition import Condition, SwarmRule
 from kswarms.scenarios.description.scenario import Scenario, toml_of

@@ -1,0 +1,275 @@
+"""Policies as they are written: parsed once, then built for each robot.
+
+A policy is a text, a class or a factory. A text is one of `POLICIES` or a user-defined class as
+``path/to/my_file.py:MyPolicy``, both with arguments where needed, or the name of an action that is always
+taken. Several policies, joined by ``+`` or in a list, are dealt out to the robots of a swarm.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache, partial
+from pathlib import Path
+from typing import Any, Final, Self
+
+from kswarms.agents.actions import Action
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.learning.rewards import make_reward
+from kswarms.agents.learning.selection_rules import make_rule
+from kswarms.agents.policies.fixed import FixedPolicy
+from kswarms.agents.policies.interface import Policy, Setting
+from kswarms.agents.policies.learner import LEARNS_BY
+from kswarms.agents.policies.registry import ALIASES, POLICIES
+from kswarms.agents.policies.user_policy import build_user_policy, check_factory
+from kswarms.agents.user_code.loading import is_reference, load_class, reference_to, sources
+from kswarms.agents.user_code.syntax import Call, is_literal, parse_call, require_known, split_outside
+
+Factory = Callable[[Setting], Policy]
+"""A policy's class, or a callable that returns a policy: ``functools.partial(MyPolicy, patience=2)``."""
+PolicyLike = str | Factory | Sequence[str | Factory]
+"""One policy, or several that are dealt out to the robots of a swarm."""
+
+_MAKERS: Final[dict[str, Callable[[Any], Any]]] = {"reward": make_reward, "rule": make_rule}
+
+
+@dataclass(frozen=True)
+class PolicySpec:
+    """One policy with its arguments.
+
+    Printing a spec gives its text. A spec is a factory itself.
+
+    Attributes
+    ----------
+    label : str
+        The text of the policy, or a description of a factory that has no text.
+    given : callable, optional
+        The class or factory, if the policy was given as one.
+    call : Call, optional
+        Name and arguments; none for a factory that another process cannot import.
+    """
+
+    label: str
+    given: Factory | None = None
+    call: Call | None = field(default=None, compare=False)
+
+    @classmethod
+    def of_factory(cls, factory: Factory) -> Self:
+        """Return the spec of a class or factory; its text is ``module:Class(…)`` where it has one."""
+        kind, arguments = factory, {}
+        if isinstance(factory, partial) and not factory.args:
+            kind, arguments = factory.func, factory.keywords
+        reference = reference_to(kind)
+        if reference is None or not all(map(is_literal, arguments.values())):
+            return cls(getattr(kind, "__qualname__", repr(kind)), factory)
+        call = Call(reference, arguments)
+        return cls(str(call), factory, call)
+
+    @property
+    def text(self) -> str:
+        """Text from which another process can build the policy.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        self._require_call()
+        return self.label
+
+    def _require_call(self) -> Call:
+        if self.call is None:
+            allowed = (
+                "cannot be imported by other processes: define the class at the top level of a module or "
+                "script, and give the class or functools.partial of it with plain values"
+            )
+            raise InputError("policy", self.label, allowed)
+        return self.call
+
+    @property
+    def name(self) -> str:
+        """Name or reference, without the arguments."""
+        return self.label if self.call is None else self.call.name
+
+    @property
+    def arguments(self) -> Mapping[str, Any]:
+        """Arguments by name."""
+        return {} if self.call is None else self.call.arguments
+
+    @property
+    def is_user_defined(self) -> bool:
+        """Whether the code of the policy comes from outside the package."""
+        return self.given is not None or is_reference(self.name)
+
+    def factory(self, actions: Sequence[Action]) -> Factory:
+        """Load the class and check the arguments; return a factory for the robots of one game.
+
+        Parameters
+        ----------
+        actions : sequence of Action
+            The actions of the game.
+
+        Raises
+        ------
+        InputError
+            If there is no such policy, or an argument is not allowed.
+        """
+        name, arguments = self.name, self.arguments
+        if self.given is not None:
+            check_factory(name, self.given, {})
+            return partial(build_user_policy, name, self.given, {})
+        by_name = {action.name: action for action in actions}
+        if name in by_name:
+            if self.label != name:
+                raise InputError("policy", self.label, "an action takes no arguments")
+            return partial(FixedPolicy, within=by_name[name], against=by_name[name])
+        if self.is_user_defined:
+            kind = load_class("policy", name)
+            check_factory(name, kind, arguments)
+            return partial(build_user_policy, name, kind, arguments)
+        if name not in POLICIES:
+            known = ", ".join([*POLICIES, *ALIASES, *by_name])
+            allowed = f"must be one of {known}, or several joined by '+', or a class as my_file.py:MyPolicy"
+            raise InputError("policy", name, allowed)
+        make, known_arguments = POLICIES[name]
+        require_known("policy", self.arguments, known_arguments)
+        if "reward" in known_arguments:
+            arguments = {**LEARNS_BY, **arguments}
+        with InputError.within("policy"):
+            made = {key: _MAKERS[key](value) if key in _MAKERS else value for key, value in arguments.items()}
+        return partial(_build_named, make, made)
+
+    def build(self, setting: Setting) -> Policy:
+        """Build the policy of one robot.
+
+        Raises
+        ------
+        InputError
+            If there is no such policy, or it does not fit the game.
+        """
+        return self.factory(setting.actions)(setting)
+
+    __call__ = build
+
+    def files(self) -> list[Path]:
+        """Return the files that the policy is made of: user-defined code and learned policies.
+
+        These are the files of its class, of the classes that its arguments ``reward`` and ``rule`` name, and
+        the file that its argument ``file`` names.
+
+        Raises
+        ------
+        InputError
+            If the policy has no text, or a file does not exist.
+        """
+        name, arguments = self._require_call()
+        parts = {part: arguments.get(part) for part in LEARNS_BY}
+        named = {"policy": name}
+        named |= {part: parse_call(part, text).name for part, text in parts.items() if isinstance(text, str)}
+        found = [file for part, name in named.items() if is_reference(name) for file in sources(part, name)]
+        file = arguments.get("file")
+        return [*found, Path(file)] if isinstance(file, str) and Path(file).is_file() else found
+
+    def learns_by(self, part: str) -> Call | None:
+        """Return the ``reward`` or ``rule`` of a named learner; none for other policies."""
+        kind = POLICIES.get(self.name)
+        if kind is None or part not in kind.arguments:
+            return None
+        return parse_call(part, self.arguments.get(part, LEARNS_BY[part]))
+
+    def with_arguments(self, **changes: Any) -> "PolicySpec":
+        """Return the same policy with some arguments changed."""
+        name, arguments = self._require_call()
+        (changed,) = parse_policies(str(Call(name, {**arguments, **changes})))
+        return changed
+
+    def __str__(self) -> str:
+        return self.label
+
+
+def parse_policies(policy: PolicyLike) -> tuple[PolicySpec, ...]:
+    """Return the policies of a swarm, in the order in which they are dealt out.
+
+    Parameters
+    ----------
+    policy : str, class, callable, or sequence of these
+        A policy, or several: a list, or a text joined by ``+``. ``mixed`` stands for ``avoid+aggressive``.
+
+    Raises
+    ------
+    InputError
+        If a text cannot be parsed. Names and values are checked when the policy is built.
+
+    Examples
+    --------
+    >>> [str(spec) for spec in parse_policies("attack+mixed")]
+    ['attack', 'avoid', 'aggressive']
+    >>> (spec,) = parse_policies("inter-learner(rule='greedy')")
+    >>> print(spec.with_arguments(reward="individual"))
+    inter-learner(rule='greedy', reward='individual')
+    """
+    if isinstance(policy, str):
+        return _parse_text(policy)
+    if isinstance(policy, PolicySpec):
+        return (policy,)
+    if callable(policy):
+        return (PolicySpec.of_factory(policy),)
+    if not isinstance(policy, Sequence) or not policy:
+        raise InputError("policy", policy, "must be a text, a class, a callable, or a list of these")
+    return tuple(spec for part in policy for spec in parse_policies(part))
+
+
+@lru_cache(maxsize=512)
+def _parse_text(text: str) -> tuple[PolicySpec, ...]:
+    specs: list[PolicySpec] = []
+    for part in split_outside(text, "+"):
+        call = parse_call("policy", part)
+        if part in ALIASES:
+            specs += _parse_text(ALIASES[part])
+        elif call.name in ALIASES:
+            raise InputError("policy", part, f"stands for {ALIASES[call.name]}, and takes no arguments")
+        else:
+            specs.append(PolicySpec(part, call=call))
+    return tuple(specs)
+
+
+def deal(policy: PolicyLike, size: int) -> list[PolicySpec]:
+    """Deal out the policies of a swarm to its robots.
+
+    Each policy gets an equal share of the robots, in order; remaining robots go to the first policies.
+
+    Parameters
+    ----------
+    policy : str, class, callable, or sequence of these
+        As in `parse_policies`.
+    size : int
+        Number of robots in the swarm.
+
+    Returns
+    -------
+    list of PolicySpec, length `size`
+        The policy of each robot.
+
+    Examples
+    --------
+    >>> [spec.text for spec in deal("mixed", 5)]
+    ['avoid', 'avoid', 'avoid', 'aggressive', 'aggressive']
+    """
+    specs = parse_policies(policy)
+    share, extra = divmod(size, len(specs))
+    return [spec for k, spec in enumerate(specs) for _ in range(share + (k < extra))]
+
+
+def make_policy(policy: str | Factory, setting: Setting) -> Policy:
+    """Build one policy for one robot.
+
+    Raises
+    ------
+    InputError
+        If there is no such policy, or it does not fit the game.
+    """
+    (spec,) = parse_policies(policy)
+    return spec.build(setting)
+
+
+def _build_named(make: Callable[..., Policy], arguments: Mapping[str, Any], setting: Setting) -> Policy:
+    with InputError.within("policy"):
+        return make(setting, **arguments)
