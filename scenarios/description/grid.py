@@ -6,8 +6,8 @@ from math import prod
 from typing import Any, Final
 
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.policies.registry import POLICIES, parts
-from kswarms.agents.user_code.syntax import parse_call
+from kswarms.agents.policies.editing import with_learning
+from kswarms.agents.policies.spec import parse_policies
 from kswarms.model.description.fields import GameFields
 from kswarms.model.description.parameters import Parameters
 from kswarms.scenarios.description.condition import Condition, SwarmRule, Value
@@ -113,28 +113,13 @@ def _with_swarm_field(swarm: SwarmRule, field: str, value: Value) -> SwarmRule:
 
 
 def _require_learner(swarms: Iterable[SwarmRule], part: str) -> None:
-    if not any(_learns(text, part) for swarm in swarms for text in parts(swarm.policy)):
+    specs = (spec for swarm in swarms for spec in parse_policies(swarm.policy))
+    if not any(spec.learns_by(part) for spec in specs):
         raise InputError(part, "", "needs a swarm of learners in every condition")
 
 
-def _learns(text: str, part: str) -> bool:
-    name = parse_call("policy", text).name
-    return name in POLICIES and part in POLICIES[name].arguments
-
-
 def _with_learning(swarm: SwarmRule, part: str, argument: str, value: Any) -> SwarmRule:
-    """Set the reward or rule of the learners of a swarm, or one argument of it; other policies stay."""
-    texts = parts(swarm.policy)
-    if not any(_learns(text, part) for text in texts):
-        return swarm
-    for k, text in enumerate(texts):
-        if _learns(text, part):
-            call = parse_call("policy", text)
-            own = parse_call(part, call.arguments.get(part, {"reward": "wlu", "rule": "ucb"}[part]))
-            new = _write(own.name, own.arguments | {argument: value}) if argument else value
-            texts[k] = _write(call.name, call.arguments | {part: new})
-    return swarm.replace(policy="+".join(texts))
-
-
-def _write(name: str, arguments: Mapping[str, Any]) -> str:
-    return f"{name}({', '.join(f'{key}={value!r}' for key, value in arguments.items())})"
+    """Set the reward or rule of the learners of a swarm, or one argument of it."""
+    if argument:
+        return swarm.replace(policy=with_learning(swarm.policy, part, **{argument: value}))
+    return swarm.replace(policy=with_learning(swarm.policy, part, value))

@@ -7,7 +7,6 @@ from kswarms.agents.common.errors import InputError
 from kswarms.agents.learning.rewards import REWARDS
 from kswarms.agents.learning.selection_rules import RULES
 from kswarms.agents.policies.spec import parse_policies
-from kswarms.agents.user_code.syntax import Call
 from kswarms.model.description.game import Game
 from kswarms.model.description.parameters import parse_parameters, text_of
 from kswarms.scenarios.description.condition import Condition, SwarmRule
@@ -174,32 +173,3 @@ def learning_of(policies: list[str]) -> Learning | None:
 def _number(fields: Any, arguments: dict[str, Any], name: str) -> float | None:
     value = arguments.get(name, fields[name].default) if name in fields else None
     return float(value) if isinstance(value, int | float) else None
-
-
-def with_learning(policy: str, part: str, name: str = "", **arguments: float) -> str:
-    """Return a policy with the reward or the rule of its learners changed; other policies stay.
-
-    Parameters
-    ----------
-    policy : str
-        A policy, or several joined by ``+``.
-    part : {'reward', 'rule'}
-        The part to change.
-    name : str
-        Name of the new reward or rule, without arguments; empty to keep the current one.
-    **arguments
-        Arguments to add or change.
-
-    Examples
-    --------
-    >>> with_learning("inter-learner(rule='greedy')", "reward", delta=0.2)
-    "inter-learner(rule='greedy', reward='wlu(delta=0.2)')"
-    """
-    specs = parse_policies(policy)
-    changed = []
-    for spec in specs:
-        if (call := spec.learns_by(part)) is not None:
-            inner = Call(name, {}) if name else Call(call.name, call.arguments | arguments)
-            spec = spec.with_arguments(**{part: str(inner)})
-        changed.append(spec)
-    return policy if changed == [*specs] else "+".join(map(str, changed))

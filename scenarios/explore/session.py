@@ -10,10 +10,11 @@ from contextlib import contextmanager
 from typing import Any, Final
 
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.policies.editing import with_learning
 from kswarms.agents.policies.learner import Learner
 from kswarms.scenarios.catalogue.selecting import USUAL_N, chosen, integers
 from kswarms.scenarios.description.condition import Condition
-from kswarms.scenarios.explore.form import Form, SwarmForm, with_learning, with_parameter
+from kswarms.scenarios.explore.form import Form, SwarmForm, with_parameter
 from kswarms.scenarios.runs.play import run_errors
 from kswarms.scenarios.runs.run import Run
 from kswarms.scenarios.watch.player import Player
@@ -146,10 +147,10 @@ class Session:
             self.change(self.form._replace(parameters=with_parameter(self.form.parameters, name, value)))
 
     def change_learning(self, part: str, name: str = "", **arguments: float) -> None:
-        """Change the reward or the rule of all learners, as `form.with_learning` does."""
+        """Change the reward or the rule of all learners, as in `with_learning`."""
         with self._told():
             swarms = (
-                swarm._replace(policy=with_learning(swarm.policy, part, name, **arguments))
+                swarm._replace(policy=with_learning(swarm.policy, part, name or None, **arguments))
                 for swarm in self.form.swarms
             )
             self.change(self.form._replace(swarms=tuple(swarms)))

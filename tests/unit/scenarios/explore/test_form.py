@@ -3,6 +3,7 @@
 import pytest
 
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.policies.editing import with_learning
 from kswarms.agents.user_code.syntax import parse_call
 from kswarms.model.description.parameters import PRESETS
 from kswarms.scenarios.catalogue import CATALOGUE
@@ -11,7 +12,6 @@ from kswarms.scenarios.explore.form import (
     Form,
     SwarmForm,
     learning_of,
-    with_learning,
     with_parameter,
 )
 
