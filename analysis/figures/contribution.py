@@ -1,8 +1,6 @@
-"""What robots contributed, for people: the scatter of contribution over reward, and tables to print."""
+"""What robots contributed, drawn over the reward that they computed."""
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 from matplotlib.axes import Axes
@@ -12,15 +10,14 @@ from kswarms.analysis.figures.files import save
 from kswarms.analysis.figures.style import LineStyle, brief, heading, legend_below, sheet, swarm_style
 from kswarms.analysis.measures.contribution import (
     MEASURES,
-    QUANTITIES,
-    assumption,
-    means,
+    mean_contributions,
     measures_of,
     of_question,
     rank_correlations,
     read,
 )
-from kswarms.analysis.text_tables import with_interval
+from kswarms.analysis.statistics.intervals import fewest_seeds
+from kswarms.analysis.tables.contribution import estimate_text
 
 
 def scatter(rows: pd.DataFrame, title: str = "") -> Figure:
@@ -42,7 +39,7 @@ def scatter(rows: pd.DataFrame, title: str = "") -> Figure:
     absent = "from learning and game" if first["absent_from"] == "learning" else "from the measured game"
     name = heading(first["scenario"], title)
     above = [name, first["condition"], f"N = {first['n']}", f"robots absent {absent}"]
-    robots, correlations = means(rows), rank_correlations(rows)
+    robots, correlations = mean_contributions(rows), rank_correlations(rows)
     with sheet(", ".join(filter(None, above)), 5.5 * len(measures) + 1, 5.5) as figure:
         panels = figure.subplots(1, len(measures), squeeze=False)[0]
         for axes, measure in zip(panels, measures, strict=True):
@@ -54,7 +51,8 @@ def scatter(rows: pd.DataFrame, title: str = "") -> Figure:
             axes.set_title(_title(correlations[correlations["measure"] == measure]), fontsize="small")
             axes.set_xlabel("reward that the robot computes in a game (s)")
             axes.set_ylabel(f"change of its swarm's SUD by the robot ({MEASURES[measure]})")
-        note = f"means of {seeds} seeds, bars: their 95 % intervals, points: single games"
+        bars = ", bars: their 95 % intervals" if seeds >= fewest_seeds() else ""
+        note = f"means of {seeds} seeds{bars}, points: single games"
         legend_below(figure, note if seeds > 1 else "one seed")
     return figure
 
@@ -85,14 +83,9 @@ def _reach(table: pd.DataFrame, quantity: str) -> pd.Series:
 def _title(correlations: pd.DataFrame) -> str:
     lines = []
     for found in correlations.to_dict("records"):
-        robots, games = (_told(found, name) for name in ("robots", "games"))
+        robots, games = (estimate_text(found, name) for name in ("robots", "games"))
         lines.append(f"S{found['swarm']}: rank correlation of robots {robots}, in a game {games}")
     return "\n".join(lines)
-
-
-def _told(found: Mapping[Any, Any], name: str, form: str = ".2f") -> str:
-    """Return a number with its interval, from columns like those of `means`."""
-    return with_interval(found[name], found[f"{name}_low"], found[f"{name}_high"], form)
 
 
 def draw(directory: Path, title: str = "", **question: object) -> Path:
@@ -116,38 +109,3 @@ def draw(directory: Path, title: str = "", **question: object) -> Path:
     path = directory / "figures" / f"contribution-{rows['scenario'].iloc[0]}.png"
     save(scatter(rows, title), path)
     return path
-
-
-def printed(rows: pd.DataFrame) -> list[tuple[str, list[list[str]]]]:
-    """Put what was found into tables for people.
-
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        As `of_question` returns them.
-
-    Returns
-    -------
-    list of (str, list of list of str)
-        For each table what it is, and its lines of cells, the header first.
-    """
-    seeds = rows["seed"].nunique()
-    by_robot = [["robot", "swarm", "SUD (pucks)", "SUD (s)", "reward (s)", "reward per second"]]
-    for found in means(rows).to_dict("records"):
-        robot = f"mean of S{found['swarm']}" if found["robot"] < 0 else str(found["robot"])
-        forms = zip(QUANTITIES, (".2f", ".1f", ".1f", ".3f"), strict=True)
-        by_robot.append([robot, f"S{found['swarm']}", *(_told(found, *each) for each in forms)])
-    ranks = [["swarm", "contribution to SUD in", "of robots' means", "within a game"]]
-    for found in rank_correlations(rows).to_dict("records"):
-        cells = (_told(found, name) for name in ("robots", "games"))
-        ranks.append([f"S{found['swarm']}", MEASURES[found["measure"]], *cells])
-    became = [["robot of", "others", "T(a)", "without", "T(p)", "without", "T(a) against it", "share freed"]]
-    for found in assumption(rows).to_dict("records"):
-        times = (f"{found[name]:.1f}" for name in ("t_a", "t_a_without", "t_p", "t_p_without", "met"))
-        became.append([f"S{found['swarm']}", found["others"], *times, _told(found, "share")])
-    interval = "one seed" if seeds == 1 else f"mean of {seeds} seeds (95 % interval)"
-    return [
-        (f"contribution of each robot, and its own reward: {interval}", by_robot),
-        ("rank correlation of reward and contribution (95 % interval)", ranks),
-        ("seconds of the others in a game, with the robot and without it", became),
-    ]

@@ -145,7 +145,7 @@ def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[st
     Parameters
     ----------
     cells : pandas.DataFrame
-        As `kswarms.analysis.tables.learned.learned` returns them.
+        As `kswarms.analysis.tables.learned.learned_shares` returns them.
     title : str
         What they are of.
     conditions : sequence of str

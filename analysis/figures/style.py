@@ -20,7 +20,8 @@ from matplotlib.figure import Figure
 
 from kswarms.agents.user_code.syntax import split_outside
 from kswarms.analysis.colours import swarm_colour
-from kswarms.analysis.statistics.means import summary
+from kswarms.analysis.statistics.intervals import fewest_seeds
+from kswarms.analysis.statistics.means import mean_by_n
 from kswarms.analysis.text_tables import span
 
 CONDITION_COLOURS: Final = tuple(sns.color_palette("colorblind").as_hex())
@@ -105,7 +106,7 @@ def draw_curves(axes: Axes, curves: Sequence[Curve], quantity: str, detail: bool
         # Curves are shifted, so that the seeds of one do not hide those of another.
         shift = gap * 0.5 * ((index + 0.5) / len(curves) - 0.5)
         seeds = rows["seed"].nunique()
-        points = summary(rows, quantity, by=())
+        points = mean_by_n(rows, quantity, by=())
         if seeds > 1 and detail:
             # Many seeds share a value: the more seeds, the lighter the points.
             alpha = min(0.25, max(0.05, 5 / seeds))
@@ -183,4 +184,7 @@ def seeds_legend(rows: pd.DataFrame, detail: bool) -> str:
     if high == 1:
         return "one seed"
     mean = f"mean of {span(low, high)} seeds"
-    return f"{mean}, band: its 95 % interval, points: single seeds" if detail else mean
+    if not detail:
+        return mean
+    band = ", band: its 95 % interval" if high >= fewest_seeds() else ""
+    return f"{mean}{band}, points: single seeds"

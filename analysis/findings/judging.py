@@ -31,14 +31,9 @@ from kswarms.analysis.findings.data import Data, NoDataError, complete, listed, 
 from kswarms.analysis.findings.verdicts import FAILS, HOLDS, NO_DATA, UNDECIDED, Outcome, Region, Verdict
 from kswarms.analysis.results.published import learned_percentages
 from kswarms.analysis.results.runs import Results
-from kswarms.analysis.statistics.curves import overtaking, rank_correlation
-from kswarms.analysis.statistics.intervals import (
-    Interval,
-    Values,
-    bootstrap_interval,
-    fewest_seeds,
-    more_seeds,
-)
+from kswarms.analysis.statistics.comparisons import more_seeds
+from kswarms.analysis.statistics.curves import overtaking, rank_correlation_with_n
+from kswarms.analysis.statistics.intervals import Interval, Values, bootstrap_interval, fewest_seeds
 
 _POWER: Final = 0.8
 
@@ -204,7 +199,7 @@ def _trend(claim: Trend, data: Data, confidence: float) -> Outcome:
     if len(data.densities) < 3:
         raise NoDataError(f"{listed(data.densities)}: a trend takes three densities")
     (table,) = data.complete()
-    interval = rank_correlation(data.densities, table.to_numpy(), confidence)
+    interval = rank_correlation_with_n(data.densities, table.to_numpy(), confidence)
     verdict = Region(claim.above, math.inf, closed=False).verdict(interval)
     notes = [*data.notes, _too_few(len(table), confidence)]
     return Outcome(verdict, interval, "rank correlation with N", len(table), notes)
@@ -222,8 +217,8 @@ def _share(claim: Share, data: Data, confidence: float) -> Outcome:
         raise InputError("runs", claim.quantity.scenario, "must have the games of which there are policies")
     counts = np.stack([shares / 100 * robots, robots], axis=-1)
 
-    def pooled(samples: Values) -> Values:
-        sums: Values = samples.sum(axis=(1, 2))
+    def pooled(means: Values) -> Values:
+        sums: Values = means.sum(axis=1)
         return 100 * sums[:, 0] / sums[:, 1]
 
     by_game = bootstrap_interval(counts, pooled, confidence)
@@ -243,8 +238,8 @@ def _agreement(claim: Agreement, data: Data, confidence: float) -> Outcome:
         raise NoDataError(f"nothing published of {listed(data.densities)}")
     values = np.stack([table.to_numpy() for table in data.complete()], axis=-1)
 
-    def mean_absolute_error(samples: Values) -> Values:
-        errors = np.abs(samples.mean(axis=1) - published)
+    def mean_absolute_error(means: Values) -> Values:
+        errors = np.abs(means - published)
         return np.asarray(np.nanmean(errors, axis=(1, 2)), dtype=np.float64)
 
     interval = bootstrap_interval(values, mean_absolute_error, confidence)

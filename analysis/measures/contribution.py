@@ -2,13 +2,10 @@
 
 From the rows of `contribution.parquet`: a robot's contribution to a game is the SUD of its swarm less that of
 the same game without it. Rows of one question are compared: one scenario, condition, N and way to be absent.
-
-An interval of a mean is Student's over the seeds; that of a rank correlation or of a quotient is a bootstrap,
-which draws seeds, each with all its robots, again. One seed has no interval: NaN.
 """
 
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -20,20 +17,15 @@ from scipy import stats
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.theory.swarms import swarm_utility_difference
 from kswarms.analysis.measures.utilities import COLUMNS, robot_utilities, swarm_utilities
-from kswarms.analysis.statistics.intervals import CONFIDENCE, student_reach
+from kswarms.analysis.statistics.intervals import Interval, bootstrap_interval
+from kswarms.analysis.statistics.means import with_intervals
 
 Floats = NDArray[np.float64]
-Statistic = Callable[[Floats], Floats]
-"""Maps what belongs to the seeds, drawn again and again, to one number for each time."""
-
 FILE: Final = "contribution.parquet"
 FEWEST_ROBOTS: Final = 3
 """Of which ranks are compared: two are in the same order or they are not."""
 
 _QUESTION: Final = ["scenario", "condition", "n", "absent_from"]
-_RESAMPLES: Final = 2000
-_BOOTSTRAP_SEED: Final = 0
-
 MEASURES: Final = {"pucks": "pucks", "time": "s"}
 """The SUD whose change is a contribution, and its unit."""
 QUANTITIES: Final = (*MEASURES, "reward", "reward_rate")
@@ -123,8 +115,8 @@ def measures_of(rows: pd.DataFrame) -> list[str]:
     return [measure for measure in MEASURES if rows[measure].notna().any()]
 
 
-def means(rows: pd.DataFrame) -> pd.DataFrame:
-    """Average over the seeds, for each robot and for each swarm.
+def mean_contributions(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return means over the seeds, for each robot and for the mean robot of each swarm.
 
     Parameters
     ----------
@@ -134,21 +126,19 @@ def means(rows: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        One row for each `swarm` and `robot`, and after them one for the mean robot of each swarm, with robot
-        −1; `seeds`, and for each of `QUANTITIES` its mean, under its own name, and the 95 % interval of that
-        mean, ``…_low`` and ``…_high``.
+        One row for each `swarm` and `robot`, then one row with robot −1 for the mean robot of each swarm;
+        `seeds`; and for each of `QUANTITIES` its mean, under its own name, with its 95 % interval, ``…_low``
+        and ``…_high``, NaN for fewer than six seeds.
     """
-    quantities = list(QUANTITIES)
-    mean_robot = rows.groupby(["swarm", "seed"])[quantities].mean().reset_index().assign(robot=-1)
-    groups = pd.concat([rows, mean_robot]).groupby(["swarm", "robot"])
-    table = groups.agg(seeds=("seed", "nunique"))
-    for quantity in quantities:
-        values = groups[quantity]
-        mean = table[quantity] = values.mean()
-        reach = student_reach(values.sem(), values.count())
-        table[f"{quantity}_low"], table[f"{quantity}_high"] = mean - reach, mean + reach
-    table = table.reset_index()
-    return table.sort_values(["swarm", "robot"], key=lambda column: column.where(column >= 0, np.inf))
+    key = ["swarm", "robot"]
+    mean_robot = rows.groupby(["swarm", "seed"])[list(QUANTITIES)].mean().reset_index().assign(robot=-1)
+    both = pd.concat([rows, mean_robot])
+    table = both.groupby(key).agg(seeds=("seed", "nunique"))
+    for quantity in QUANTITIES:
+        columns = with_intervals(both, key, quantity).set_index(key)
+        for suffix, name in (("", "mean"), ("_low", "low"), ("_high", "high")):
+            table[f"{quantity}{suffix}"] = columns[name]
+    return table.reset_index().sort_values(key, key=lambda column: column.where(column >= 0, np.inf))
 
 
 def rank_correlations(rows: pd.DataFrame) -> pd.DataFrame:
@@ -165,11 +155,10 @@ def rank_correlations(rows: pd.DataFrame) -> pd.DataFrame:
         One row for each `swarm` of three robots at least and each `measure`, with Spearman's ρ and its 95 %
         interval:
 
-        * ``robots``, ``…_low``, ``…_high``: of the robots' means over the seeds; bootstrap over seeds;
-        * ``games``, ``…_low``, ``…_high``: of the robots in one game, averaged over the games; Student's t,
-          cut at ±1.
+        * ``robots``, ``…_low``, ``…_high``: of the robots' means over the seeds;
+        * ``games``, ``…_low``, ``…_high``: of the robots in one game, averaged over the games.
 
-        NaN where all robots have the same.
+        NaN where all robots have the same value; the bounds are NaN for fewer than six seeds.
     """
     table = []
     for swarm, of_swarm in rows.groupby("swarm"):
@@ -177,21 +166,17 @@ def rank_correlations(rows: pd.DataFrame) -> pd.DataFrame:
         for measure in measures_of(rows) if reward.shape[1] >= FEWEST_ROBOTS else ():
             contribution = _by_seed(of_swarm, measure)
             both = np.stack([reward, contribution], axis=-1)
-            in_games = rank_correlation(reward, contribution)
-            of_games = np.clip(_student(in_games[~np.isnan(in_games)]), -1.0, 1.0)
-            of_means = (float(_of_means(both)), *_bootstrap(both, _of_means))
-            table.append((swarm, measure, *of_means, *of_games))
+            in_games = spearman(reward, contribution)
+            of_means = bootstrap_interval(
+                both, lambda means: spearman(means[..., 0], means[..., 1]), smooth=False
+            )
+            of_games = _mean_interval(in_games[~np.isnan(in_games)])
+            table.append((swarm, measure, *_finite(of_means), *_finite(of_games)))
     columns = ("robots", "robots_low", "robots_high", "games", "games_low", "games_high")
     return pd.DataFrame(table, columns=["swarm", "measure", *columns])
 
 
-def _of_means(games: Floats) -> Floats:
-    """Return ρ of the means over the seeds of two quantities, shape (…, seeds, robots, 2)."""
-    mean = games.mean(axis=-3)
-    return rank_correlation(mean[..., 0], mean[..., 1])
-
-
-def rank_correlation(first: Floats, second: Floats) -> Floats:
+def spearman(first: Floats, second: Floats) -> Floats:
     """Return Spearman's ρ along the last axis, NaN where one of both is constant.
 
     Parameters
@@ -243,15 +228,15 @@ def assumption(rows: pd.DataFrame) -> pd.DataFrame:
             if (times["t_a"] + times["t_p"] == 0).all():
                 continue  # nobody there
             of_seeds = times.groupby(of_swarm["seed"]).mean().to_numpy()
-            low, high = _bootstrap(of_seeds, _share)
+            share, low, high = _finite(bootstrap_interval(of_seeds, _share))
             found: dict[str, Any] = {"swarm": swarm, "others": others, **times.mean()}
-            table.append(found | {"share": float(_share(of_seeds)), "share_low": low, "share_high": high})
+            table.append(found | {"share": share, "share_low": low, "share_high": high})
     return pd.DataFrame(table)
 
 
-def _share(tables: Floats) -> Floats:
-    """Return the quotient of `assumption` for tables of shape (…, seeds, 5), in the order of its columns."""
-    t_a, t_a_without, met = (tables[..., column].mean(axis=-1) for column in (0, 1, 4))
+def _share(means: Floats) -> Floats:
+    """Return the quotient of `assumption` for means of shape (resamples, 5), in the order of its columns."""
+    t_a, t_a_without, _, _, met = means.T
     share: Floats = np.divide(t_a - t_a_without, met, out=np.full_like(met, np.nan), where=met > 0)
     return share
 
@@ -262,30 +247,12 @@ def _by_seed(rows: pd.DataFrame, quantity: str) -> Floats:
     return table
 
 
-def _student(values: Floats) -> tuple[float, float, float]:
-    """Return the mean of values and the 95 % interval of it, NaN where it takes more of them."""
-    if len(values) < 2:
-        return (float(values.mean()) if len(values) else np.nan), np.nan, np.nan
-    mean = float(values.mean())
-    reach = float(student_reach(stats.sem(values), len(values)))
-    return mean, mean - reach, mean + reach
+def _mean_interval(values: Floats) -> Interval:
+    return bootstrap_interval(values) if len(values) else Interval(np.nan, np.nan, np.nan)
 
 
-def _bootstrap(table: Floats, statistic: Statistic) -> tuple[float, float]:
-    """Return the 95 % interval of a statistic of a table over the seeds, its first axis."""
-    seeds = len(table)
-    if seeds < 2:
-        return np.nan, np.nan
-    with warnings.catch_warnings():
-        # Of a statistic that has no value in some resample: NaN says it all.
-        warnings.simplefilter("ignore", stats.DegenerateDataWarning)
-        resampled = stats.bootstrap(
-            (np.arange(seeds),),
-            lambda drawn, axis: statistic(table[drawn]),  # `axis`: SciPy's call, always the last
-            n_resamples=_RESAMPLES,
-            confidence_level=CONFIDENCE,
-            method="percentile",
-            rng=np.random.default_rng(_BOOTSTRAP_SEED),
-        )
-    low, high = resampled.confidence_interval
-    return float(low), float(high)
+def _finite(interval: Interval) -> tuple[float, float, float]:
+    """Return estimate and bounds, NaN for the bounds of too few seeds."""
+    if np.isinf(interval.low):
+        return interval.estimate, np.nan, np.nan
+    return interval.estimate, interval.low, interval.high

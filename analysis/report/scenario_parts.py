@@ -57,9 +57,9 @@ def scenario_part(results: Results, scenario: str, title: str, missing: str, tab
             f"{alt}, {form}; the table of {scenario} has its numbers.",
             f"{shown[0].upper()}{shown[1:]}, {form}.",
         )
-    part.add_table(scenario, f"Numbers of {scenario}", scores.printed(frame), frame)
+    part.add_table(scenario, f"Numbers of {scenario}", scores.scores_table(frame), frame)
     if results.policies is not None and scenario in set(results.policies["scenario"]):
-        _add_learned(part, results.runs, tables.learned(results.policies, [scenario]), title, table)
+        _add_learned(part, results.runs, tables.learned_shares(results.policies, [scenario]), title, table)
     return part
 
 
@@ -77,17 +77,17 @@ def _add_learned(part: Part, runs: pd.DataFrame, cells: pd.DataFrame, title: str
         f"Learned policies{published}; {name} has the numbers.",
     )
     if not table:
-        part.add_table(name, f"Learned in {scenario}", tables.printed(cells), cells)
+        part.add_table(name, f"Learned in {scenario}", tables.learned_table(cells), cells)
 
 
 def table_part(policies: pd.DataFrame, table: str, title: str, scenarios: Sequence[str]) -> Part:
     """Show a table of the source: measured numbers, and published ones if they are available."""
-    cells = tables.learned(policies, scenarios)
+    cells = tables.learned_shares(policies, scenarios)
     part = Part(table, f"{table}: {title}")
     absent = [name for name in scenarios if name not in set(cells["scenario"])]
     if absent:
         part.text.append(f"Missing: {', '.join(absent)}; the numbers are of {cells['scenario'].iloc[0]}.")
-    part.add_table(table, title, tables.printed(cells), cells)
+    part.add_table(table, title, tables.learned_table(cells), cells)
     return part
 
 
@@ -105,7 +105,7 @@ def argos_parts(runs: pd.DataFrame) -> Iterator[tuple[str, Part]]:
         f"{frame['share_fits'].sum()}.",
     ]
     part = Part("argos", "Agreement with ARGoS 3", text)
-    table = replace(fidelity.printed(frame), marks={"yes": "holds", "no": "fails"})
+    table = replace(fidelity.argos_table(frame), marks={"yes": "holds", "no": "fails"})
     part.add_table("argos", "The same games here and in ARGoS 3", table, frame)
     yield ARGOS, part
 

@@ -1,7 +1,7 @@
-"""Statistics of curves over the number of robots: where one overtakes another, and whether it rises with N.
+"""Statistics of curves over the number of robots: crossings and trend.
 
-A curve is the mean over the seeds at each density, straight lines between densities. Seeds are drawn again
-whole, with their values at every density, so samples here have the shape (seeds, densities).
+A curve is the mean over the seeds at each density, with straight lines between densities. Samples have the
+shape (seeds, densities): a resample draws a seed with its values at all densities.
 """
 
 from collections.abc import Sequence
@@ -18,15 +18,15 @@ from kswarms.analysis.statistics.intervals import CONFIDENCE, Interval, Values, 
 
 @dataclass(frozen=True)
 class Overtaking:
-    """Where a curve overtakes another one.
+    """Where one curve overtakes another.
 
     Attributes
     ----------
     crossings : tuple of float
-        Every N at which the difference of the mean curves changes its sign, in either direction.
+        Every N at which the difference of the mean curves changes sign, in either direction.
     for_good : Interval
-        The N from which on the difference stays above 0 up to the last density. −inf: it is above 0 from the
-        first density on. +inf: it is not above 0 at the last one.
+        The N from which the difference stays above 0 up to the last density. −inf: it is above 0 at every
+        density. +inf: it is not above 0 at the last density.
     """
 
     crossings: tuple[float, ...]
@@ -34,13 +34,13 @@ class Overtaking:
 
 
 def crossings(densities: ArrayLike, differences: ArrayLike) -> tuple[float, ...]:
-    """Return where a curve changes its sign, in ascending order.
+    """Return where a curve changes sign, in ascending order.
 
     Parameters
     ----------
     densities, differences : array_like
-        Shape (densities,): N, ascending, and the curve's value there. Between them it is a straight line; a
-        stretch of zeros between two signs is crossed in its middle, one between equal signs not at all.
+        Shape (densities,): N, ascending, and the value there, linear in between. A stretch of zeros between
+        different signs is one crossing in its middle; a stretch between equal signs is none.
     """
     n, values = _curve(densities, differences)
     (nonzero,) = np.nonzero(values)
@@ -58,36 +58,34 @@ def crossings(densities: ArrayLike, differences: ArrayLike) -> tuple[float, ...]
 def overtaking(
     densities: Sequence[int], differences: ArrayLike, confidence: float = CONFIDENCE
 ) -> Overtaking:
-    """Say at which N one curve overtakes another, with a bootstrap interval over the seeds.
+    """Return where one curve overtakes another, with an interval over the seeds.
 
-    Noise lets curves that run together cross often, so the interval is of the last crossing, after which the
-    one stays ahead. It exists in every resample, if ±inf counts: no resample is left out.
+    Noise makes similar curves cross often, so the interval is of the last crossing, after which the first
+    curve stays ahead. Every resample has one if ±inf counts, so no resample is left out.
 
     Parameters
     ----------
     densities : sequence of int
         N, ascending.
     differences : array_like
-        Shape (seeds, densities): the overtaking curve's value less the other's, seed by seed.
+        Shape (seeds, densities): first curve − second curve.
     confidence : float
         Level of the interval.
 
     Raises
     ------
     InputError
-        Fewer than two densities, no seed, or shapes that do not fit.
+        There are fewer than two densities, no seeds, or shapes that do not match.
     """
     n, values = _samples(densities, differences)
-    return Overtaking(
-        crossings(n, values.mean(axis=0)),
-        bootstrap_interval(values, lambda samples: _last_rise(n, samples.mean(axis=1)), confidence),
-    )
+    last = bootstrap_interval(values, lambda means: _last_rise(n, means), confidence)
+    return Overtaking(crossings(n, values.mean(axis=0)), last)
 
 
-def rank_correlation(
+def rank_correlation_with_n(
     densities: Sequence[int], samples: ArrayLike, confidence: float = CONFIDENCE
 ) -> Interval:
-    """Return Spearman's rank correlation of a mean curve with N, with a bootstrap interval over the seeds.
+    """Return Spearman's rank correlation of a mean curve with N, with an interval over the seeds.
 
     Parameters
     ----------
@@ -101,31 +99,31 @@ def rank_correlation(
     Returns
     -------
     Interval
-        −1 … 1; a curve that is level has no ranks and counts as 0.
+        −1 … 1; 0 for a constant curve.
 
     Raises
     ------
     InputError
-        Fewer than two densities, no seed, or shapes that do not fit.
+        There are fewer than two densities, no seeds, or shapes that do not match.
     """
     _, values = _samples(densities, samples)
     ranks = stats.rankdata(densities)
     ranks -= ranks.mean()
 
-    def statistic(resampled: Values) -> Values:
-        of_curve = stats.rankdata(resampled.mean(axis=1), axis=-1)
+    def correlation(means: Values) -> Values:
+        of_curve = stats.rankdata(means, axis=-1)
         of_curve -= of_curve.mean(axis=-1, keepdims=True)
         length = np.sqrt((ranks @ ranks) * (of_curve**2).sum(axis=-1))
         result: Values = np.divide(of_curve @ ranks, length, out=np.zeros_like(length), where=length > 0)
         return result
 
-    return bootstrap_interval(values, statistic, confidence)
+    return bootstrap_interval(values, correlation, confidence, smooth=False)
 
 
 def _last_rise(n: Values, curves: Values) -> Values:
     """Return where each curve, shape (resamples, densities), rises above 0 for the last time."""
     above = curves > 0
-    # Densities at the end of the curve that are above 0 without a gap.
+    # Number of densities at the end of the curve that are all above 0.
     ahead = np.cumprod(above[:, ::-1], axis=1).sum(axis=1)
     rows = np.arange(len(curves))
     right = np.clip(len(n) - ahead, 1, len(n) - 1)
@@ -141,7 +139,7 @@ def _last_rise(n: Values, curves: Values) -> Values:
 def _curve(densities: ArrayLike, values: ArrayLike) -> tuple[Values, Values]:
     n, curve = np.asarray(densities, dtype=np.float64), np.asarray(values, dtype=np.float64)
     if n.ndim != 1 or n.size < 2 or (np.diff(n) <= 0).any():
-        raise InputError("densities", n.tolist(), "must be two or more that ascend")
+        raise InputError("densities", n.tolist(), "must be two or more, in ascending order")
     if curve.shape[-1:] != n.shape:
         raise InputError("values", curve.shape, f"must have {n.size} densities along the last axis")
     return n, curve
@@ -150,5 +148,5 @@ def _curve(densities: ArrayLike, values: ArrayLike) -> tuple[Values, Values]:
 def _samples(densities: ArrayLike, samples: ArrayLike) -> tuple[Values, Values]:
     n, values = _curve(densities, samples)
     if values.ndim != 2:
-        raise InputError("samples", values.shape, "must be of the shape (seeds, densities)")
+        raise InputError("samples", values.shape, "must have the shape (seeds, densities)")
     return n, values

@@ -1,48 +1,41 @@
-"""Statistics over seeds: intervals, paired comparisons, correction for many of them, seeds still needed.
+"""Bootstrap confidence intervals over seeds: the one kind of interval of figures, tables and findings.
 
-SciPy and statsmodels do the statistics. What is fixed here is the unit, one value for each seed; the number
-of resamples and their random numbers, so that the same results give the same interval; and what is said of
-data that a method has no answer for.
+Every statistic here is a function of the mean over the seeds. The mean of a resample is a weighted mean of
+the seeds, so one product of two arrays gives all resamples.
 """
 
 import math
-import warnings
-from bisect import bisect_left
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final, Literal
+from functools import lru_cache
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import stats
-from statsmodels.stats.multitest import multipletests
-from statsmodels.stats.power import TTestPower
+from scipy import special, stats
 
 from kswarms.agents.common.errors import InputError
 
 Values = NDArray[np.float64]
 Statistic = Callable[[Values], Values]
-"""Maps samples of shape (resamples, seeds, …) to one number for each resample, shape (resamples,)."""
+"""Maps means over the seeds, shape (resamples, …), to values of shape (resamples, …)."""
 
 CONFIDENCE: Final = 0.95
 RESAMPLES: Final = 9999
-# Fixed: a verdict must not change when it is asked for twice.
-_RANDOM_SEED: Final = 0
-# Numbers resampled at a time: 200 seeds at ten densities stay below 20 MB.
-_BATCH: Final = 2_000_000
-_MOST_SEEDS: Final = 1_000_000
+# Fixed, so that the same results always give the same interval.
+RANDOM_SEED: Final = 0
 
 
 @dataclass(frozen=True)
 class Interval:
-    """A number estimated from seeds, and between which bounds it lies.
+    """An estimate and its confidence interval.
 
     Attributes
     ----------
     estimate : float
-        From all seeds.
+        Value of the statistic for all seeds.
     low, high : float
-        Bounds of the confidence interval, in the unit of the estimate.
+        Bounds of the interval, in the unit of the estimate.
     """
 
     estimate: float
@@ -50,259 +43,134 @@ class Interval:
     high: float
 
 
-@dataclass(frozen=True)
-class PairedComparison:
-    """Two samples on common seeds.
-
-    Attributes
-    ----------
-    difference : Interval
-        Mean of first − second, in their unit.
-    d_z : float
-        Cohen's d_z, the mean of the differences by their standard deviation; ±inf where every seed has the
-        same difference, 0 where it is 0.
-    cliffs_delta : float
-        Odds that a value of the first is larger than one of the second, less those of the reverse: −1 … 1.
-    p_value : float
-        Two-sided, of the permutation test that exchanges the two values of a seed; exact up to 13 seeds.
-    seeds : int
-        Pairs.
-    """
-
-    difference: Interval
-    d_z: float
-    cliffs_delta: float
-    p_value: float
-    seeds: int
-
-
-def mean_over_seeds(samples: Values) -> Values:
-    """Return the mean of each resample: the statistic unless another is asked for."""
-    means: Values = samples.mean(axis=1)
+def mean_itself(means: Values) -> Values:
+    """Return the means: the default statistic."""
     return means
 
 
 def bootstrap_interval(
-    samples: ArrayLike, statistic: Statistic = mean_over_seeds, confidence: float = CONFIDENCE
+    samples: ArrayLike,
+    statistic: Statistic = mean_itself,
+    confidence: float = CONFIDENCE,
+    smooth: bool = True,
 ) -> Interval:
-    """Return a statistic of seeds with its bootstrap interval: seeds are drawn again, with replacement.
+    """Return one statistic with its interval; see `bootstrap_intervals`."""
+    estimate, low, high = bootstrap_intervals(samples, statistic, confidence, smooth)
+    return Interval(float(estimate), float(low), float(high))
 
-    The method is BCa (`scipy.stats.bootstrap`), or percentiles where BCa has no answer, for one seed left out
-    changes nothing or a resample is infinite. As a bootstrap of few seeds is too narrow, its level is raised
-    to 2Φ(√(n / (n − 1)) t) − 1, t being the quantile of Student's law with n − 1 degrees of freedom
-    (Hesterberg 2015, "expanded percentile"). Seeds that are all alike give an interval of no width; too few
-    for the level (`fewest_seeds`) give one without bounds, −inf … inf.
+
+def bootstrap_intervals(
+    samples: ArrayLike,
+    statistic: Statistic = mean_itself,
+    confidence: float = CONFIDENCE,
+    smooth: bool = True,
+) -> tuple[Values, Values, Values]:
+    """Return statistics of the mean over the seeds, with bootstrap intervals.
+
+    The method is BCa (bias-corrected and accelerated), or percentiles where BCa is undefined. Bootstrap
+    intervals of few seeds are too narrow, so each tail is Φ(−√(n / (n − 1)) t), where t is the quantile of
+    Student's distribution with n − 1 degrees of freedom (Hesterberg 2015, "expanded percentile").
 
     Parameters
     ----------
     samples : array_like
-        Shape (seeds, …): what belongs to one seed is drawn together.
+        Shape (seeds, …). All values of a seed are resampled together.
     statistic : callable
-        Maps (resamples, seeds, …) to (resamples,).
+        Maps means of shape (resamples, …) to values of shape (resamples, …); the default is the mean itself.
     confidence : float
-        Level of the interval, 0 … 1.
+        Level of the intervals, 0 … 1.
+    smooth : bool
+        False for a statistic of ranks. BCa is not valid for it: where all ranks are chance, intervals of 95 %
+        for a rank correlation excluded 0 in a fifth of all samples. Its bounds are percentiles.
+
+    Returns
+    -------
+    estimate, low, high : ndarray of float64
+        The statistic of all seeds and its bounds. Identical seeds give an interval of width 0. With fewer
+        seeds than `fewest_seeds`, the bounds are −inf and inf. Both are NaN where the statistic is NaN in any
+        resample.
 
     Raises
     ------
     InputError
-        There is no seed, or the confidence is none.
+        There is no seed, or the confidence is not between 0 and 1.
     """
     values = np.asarray(samples, dtype=np.float64)
-    _at_least(1, len(values))
-    estimate = float(statistic(values[np.newaxis])[0])
-    if len(values) < fewest_seeds(confidence):
-        return Interval(estimate, -math.inf, math.inf)
-    if (values == values[0]).all():
-        return Interval(estimate, estimate, estimate)
+    seeds = check_seeds(values, 1)
 
-    # SciPy resamples lists of numbers, so seeds go by their place; its `axis` is always the last.
-    def of_seeds(chosen: NDArray[np.int64], axis: int = -1) -> Values:
-        resampled = chosen.reshape(-1, chosen.shape[-1])
-        return statistic(values[resampled]).reshape(chosen.shape[:-1])
+    # Relative to the first seed, so that means of identical seeds are exact.
+    offsets = (values - values[0]).reshape(seeds, -1)
 
-    level = expanded(confidence, len(values))
-    with warnings.catch_warnings(), np.errstate(invalid="ignore"):
-        # Where BCa has no answer; what is done about it stands below.
-        warnings.simplefilter("ignore", stats.DegenerateDataWarning)
-        warnings.simplefilter("ignore", RuntimeWarning)
-        result = stats.bootstrap(
-            (np.arange(len(values)),),
-            of_seeds,
-            n_resamples=RESAMPLES,
-            batch=max(1, _BATCH // values.size),
-            vectorized=True,
-            confidence_level=level,
-            method="BCa",
-            rng=np.random.default_rng(_RANDOM_SEED),
+    def of_means(counts: Values, total: int) -> Values:
+        # einsum, not BLAS: its threads wait for each other on a busy machine.
+        means = np.einsum("sv,sr->vr", offsets, counts).T.reshape(-1, *values.shape[1:])
+        return np.moveaxis(statistic(values[0] + means / total), 0, -1)
+
+    estimate = of_means(np.ones((seeds, 1)), seeds)[..., 0]
+    if seeds < fewest_seeds(confidence):
+        return estimate, np.full_like(estimate, -np.inf), np.full_like(estimate, np.inf)
+    resampled = np.sort(of_means(_seed_counts(seeds), seeds))
+    reach = math.sqrt(seeds / (seeds - 1)) * stats.t.ppf((1 + confidence) / 2, seeds - 1)
+    if not smooth:
+        undefined = np.full_like(estimate, np.nan)
+        low, high = (_quantile(resampled, undefined, z) for z in (-reach, reach))
+        return estimate, low, high
+    with np.errstate(invalid="ignore", divide="ignore"):
+        below, up_to = (
+            np.count_nonzero(compare(resampled, estimate[..., np.newaxis]), axis=-1)
+            for compare in (np.less, np.less_equal)
         )
-    bounds = result.confidence_interval
-    if math.isnan(bounds.low) or math.isnan(bounds.high):
-        tail = (1 - level) / 2
-        # A value that was drawn, not one between two: these may be infinite.
-        low, high = np.quantile(result.bootstrap_distribution, [tail, 1 - tail], method="inverted_cdf")
-        return Interval(estimate, float(low), float(high))
-    return Interval(estimate, float(bounds.low), float(bounds.high))
+        bias = special.ndtri((below + up_to) / (2 * RESAMPLES))
+        one_left_out = of_means(1 - np.eye(seeds), seeds - 1)
+        gaps = one_left_out.mean(axis=-1, keepdims=True) - one_left_out
+        acceleration = (gaps**3).sum(axis=-1) / (6 * (gaps**2).sum(axis=-1) ** 1.5)
+    low, high = (_quantile(resampled, _level(bias, acceleration, z), z) for z in (-reach, reach))
+    return estimate, low, high
 
 
 def fewest_seeds(confidence: float = CONFIDENCE) -> int:
-    """Return from how many seeds on an interval that assumes no law can have this level.
+    """Return the minimum number of seeds for a distribution-free interval of this level.
 
-    A bootstrap interval of a mean lies within the values drawn. All n of them fall on one side of a median
-    with odds of 2^(1 − n), which must not exceed 1 − confidence: six seeds for 95 %.
+    A bootstrap interval of a mean lies within the sampled values. All n values lie on one side of the median
+    with probability 2^(1 − n), which must not exceed 1 − confidence: six seeds for 95 %.
     """
-    _check_confidence(confidence)
+    check_confidence(confidence)
     return math.ceil(1 - math.log2(1 - confidence))
 
 
-def compare_paired(first: ArrayLike, second: ArrayLike, confidence: float = CONFIDENCE) -> PairedComparison:
-    """Compare two samples of the same seeds, seed by seed.
-
-    Parameters
-    ----------
-    first, second : array_like
-        Shape (seeds,), in the same order of seeds.
-    confidence : float
-        Level of the difference's interval.
-
-    Raises
-    ------
-    InputError
-        The samples are of different lengths or hold fewer than two seeds.
-    """
-    one, other = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
-    if one.ndim != 1 or one.shape != other.shape:
-        raise InputError("second", other.shape, f"must have the shape {one.shape}, one value for each seed")
-    _at_least(2, one.size)
-    difference = bootstrap_interval(one - other, confidence=confidence)
-    test = stats.permutation_test(
-        (one, other),
-        lambda x, y, axis: np.mean(x - y, axis=axis),
-        permutation_type="samples",
-        vectorized=True,
-        n_resamples=RESAMPLES,
-        rng=np.random.default_rng(_RANDOM_SEED),
-    )
-    larger = stats.mannwhitneyu(one, other).statistic / one.size**2
-    return PairedComparison(
-        difference=difference,
-        d_z=effect_size(one - other),
-        cliffs_delta=float(2 * larger - 1),
-        p_value=float(test.pvalue),
-        seeds=one.size,
-    )
+def check_seeds(samples: Values, fewest: int) -> int:
+    """Return the number of seeds of samples, shape (seeds, …), which must be at least `fewest`."""
+    if len(samples) < fewest:
+        raise InputError("seeds", len(samples), f"must be at least {fewest}")
+    return len(samples)
 
 
-def effect_size(differences: ArrayLike) -> float:
-    """Return Cohen's d_z of paired differences; ±inf where all are the same, 0 where all are 0."""
-    values = np.asarray(differences, dtype=np.float64)
-    mean, deviation = float(values.mean()), float(values.std(ddof=1))
-    if (values == values[0]).all():
-        return math.copysign(math.inf, mean) if mean else 0.0
-    return mean / deviation
-
-
-def adjusted(
-    p_values: Sequence[float], method: Literal["holm", "benjamini-hochberg"] = "holm"
-) -> list[float]:
-    """Correct p-values for their number.
-
-    Parameters
-    ----------
-    p_values : sequence of float
-        Of all comparisons that were made, not only of those that came out.
-    method : str
-        ``holm`` bounds the odds of any false finding, ``benjamini-hochberg`` the expected share of false
-        ones among those found.
-
-    Returns
-    -------
-    list of float
-        In the same order; each is to be compared with the level for all.
-
-    Raises
-    ------
-    InputError
-        A p-value is none, or the method is unknown.
-    """
-    names = {"holm": "holm", "benjamini-hochberg": "fdr_bh"}
-    if method not in names:
-        raise InputError("method", method, f"must be one of {', '.join(names)}")
-    for p in p_values:
-        if not 0 <= p <= 1:
-            raise InputError("p_values", p, "must be between 0 and 1")
-    if not p_values:
-        return []
-    _, corrected, _, _ = multipletests(p_values, method=names[method])
-    return [float(p) for p in corrected]
-
-
-def more_seeds(differences: ArrayLike, power: float = 0.8, confidence: float = CONFIDENCE) -> int | None:
-    """Return how many seeds more would tell the mean of differences from 0, if it is what it seems.
-
-    Parameters
-    ----------
-    differences : array_like
-        Shape (seeds,).
-    power : float
-        Odds of telling it, 0 … 1.
-    confidence : float
-        Level of the two-sided test (Student's t, statsmodels' `TTestPower`).
-
-    Returns
-    -------
-    int or None
-        0 if there are enough; None where a million would not do.
-
-    Raises
-    ------
-    InputError
-        There are fewer than two seeds, or a power or confidence that is none.
-    """
-    values = np.asarray(differences, dtype=np.float64)
-    _at_least(2, len(values))
-    _check_confidence(confidence)
-    if not 0 < power < 1:
-        raise InputError("power", power, "must be between 0 and 1")
-    size = abs(effect_size(values))
-    law = TTestPower()
-
-    def enough(seeds: int) -> bool:
-        # NaN where the effect is so large that the law has no number for it.
-        return not law.power(size, seeds, 1 - confidence) < power
-
-    # statsmodels' own search stops without an answer at large effects.
-    more = bisect_left(range(len(values), _MOST_SEEDS), True, key=enough)
-    return more if len(values) + more < _MOST_SEEDS else None
-
-
-def student_reach(deviation: ArrayLike, seeds: ArrayLike) -> Values:
-    """Return half the width of Student's interval of means at the level `CONFIDENCE`, NaN for one seed.
-
-    Parameters
-    ----------
-    deviation : array_like
-        Standard error of each mean.
-    seeds : array_like
-        What each is the mean of.
-    """
-    reach: Values = stats.t.ppf(0.5 + CONFIDENCE / 2, np.asarray(seeds) - 1) * np.asarray(deviation)
-    return reach
-
-
-def expanded(confidence: float, seeds: int) -> float:
-    """Return the level at which percentiles of the resampled mean of a few seeds keep a confidence.
-
-    Bootstrap intervals of few seeds are too narrow (Hesterberg 2015, "expanded percentile").
-    """
-    quantile = stats.t.ppf((1 + confidence) / 2, seeds - 1)
-    return float(2 * stats.norm.cdf(math.sqrt(seeds / (seeds - 1)) * quantile) - 1)
-
-
-def _at_least(fewest: int, seeds: int) -> None:
-    if seeds < fewest:
-        raise InputError("seeds", seeds, f"must be at least {fewest}")
-
-
-def _check_confidence(confidence: float) -> None:
+def check_confidence(confidence: float) -> None:
+    """Require a level between 0 and 1."""
     if not 0 < confidence < 1:
         raise InputError("confidence", confidence, "must be between 0 and 1")
+
+
+@lru_cache(maxsize=4)
+def _seed_counts(seeds: int) -> Values:
+    """Return how often each seed is in each resample, shape (seeds, RESAMPLES)."""
+    counts = np.random.default_rng(RANDOM_SEED).multinomial(seeds, np.full(seeds, 1 / seeds), size=RESAMPLES)
+    return np.ascontiguousarray(counts.T, dtype=np.float64)
+
+
+def _level(bias: Values, acceleration: Values, z: float) -> Values:
+    """Return the quantile level that BCa uses for a normal quantile `z`; NaN where BCa is undefined."""
+    with np.errstate(invalid="ignore"):
+        shrink = 1 - acceleration * (bias + z)
+        level = special.ndtr(bias + (bias + z) / shrink)
+    return np.where(np.isfinite(bias) & (shrink > 0), level, np.nan)
+
+
+def _quantile(ordered: Values, level: Values, z: float) -> Values:
+    """Return quantiles along the sorted last axis, at the level of `z` where `level` is NaN."""
+    level = np.where(np.isnan(level), special.ndtr(z), level)
+    # A sampled value, never a value between two: these may be infinite.
+    index = np.clip(np.ceil(level * RESAMPLES).astype(int) - 1, 0, RESAMPLES - 1)
+    found = np.take_along_axis(ordered, index[..., np.newaxis], axis=-1)[..., 0]
+    # NaNs are sorted last.
+    return np.where(np.isnan(ordered[..., -1]), np.nan, found)

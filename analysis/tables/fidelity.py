@@ -4,12 +4,14 @@ A mean score agrees within 20 %, or within 1.5 pucks, or when the 95 % Welch int
 0; a mean share of time in conflict, T(a) / (T(a) + T(p)), agrees within 0.06.
 """
 
+import math
+from typing import Any
+
 import pandas as pd
-from scipy import stats
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.results.published import argos_fixed_policies
-from kswarms.analysis.statistics.intervals import CONFIDENCE
+from kswarms.analysis.statistics.comparisons import compare_independent
 from kswarms.analysis.text_tables import NONE, PrintedTable, with_interval
 
 SHARE_TOLERANCE = 0.06
@@ -47,45 +49,46 @@ def against_argos(runs: pd.DataFrame) -> pd.DataFrame:
     InputError
         No run can be compared.
     """
-    theirs = _summary(_argos_games())
-    both = _summary(_own_games(runs)).merge(
-        theirs, left_index=True, right_index=True, suffixes=("_ours", "_theirs")
-    )
-    both = both.sort_index()
-    if both.empty:
-        known = theirs.index
-        allowed = ", ".join(sorted(set(known.get_level_values("scenario"))))
-        densities = ", ".join(str(n) for n in sorted(set(known.get_level_values("n"))))
+    theirs = _argos_games()
+    by_swarm = dict(list(theirs.groupby(_ROW)))
+    rows = [
+        dict(zip(_ROW, key, strict=True)) | _compare(games, by_swarm[key])
+        for key, games in _own_games(runs).groupby(_ROW)
+        if key in by_swarm
+    ]
+    if not rows:
+        allowed = ", ".join(sorted(set(theirs["scenario"])))
+        densities = ", ".join(str(n) for n in sorted(set(theirs["n"])))
         raise InputError(
             "scenarios", sorted(set(runs["scenario"])), f"must include {allowed} at one of N = {densities}"
         )
-    difference = both["score_ours"] - both["score_theirs"]
-    reach = _reach(both)
-    share_difference = both["share_ours"] - both["share_theirs"]
-    return pd.DataFrame(
-        {
-            "seeds_ours": both["seeds_ours"],
-            "seeds_theirs": both["seeds_theirs"],
-            "score_ours": both["score_ours"],
-            "score_theirs": both["score_theirs"],
-            "score_difference": difference,
-            "score_low": difference - reach,
-            "score_high": difference + reach,
-            "score_relative": (difference / both["score_theirs"]).where(both["score_theirs"] > 0),
-            "score_fits": (
-                (difference.abs() <= SCORE_TOLERANCE * both["score_theirs"] + _ROUNDING)
-                | (difference.abs() <= PUCK_TOLERANCE + _ROUNDING)
-                | (difference.abs() <= reach)
-            ),
-            "share_ours": both["share_ours"],
-            "share_theirs": both["share_theirs"],
-            "share_difference": share_difference,
-            "share_fits": share_difference.abs() <= SHARE_TOLERANCE + _ROUNDING,
-        }
-    ).reset_index()
+    return pd.DataFrame(rows)
 
 
-def printed(frame: pd.DataFrame) -> PrintedTable:
+def _compare(ours: pd.DataFrame, theirs: pd.DataFrame) -> dict[str, Any]:
+    """Return a row of `against_argos` for the games of one swarm."""
+    score = compare_independent(ours["score"], theirs["score"])
+    theirs_score, theirs_share = theirs["score"].mean(), theirs["share"].mean()
+    share_difference = ours["share"].mean() - theirs_share
+    tolerance = max(SCORE_TOLERANCE * theirs_score, PUCK_TOLERANCE) + _ROUNDING
+    return {
+        "seeds_ours": len(ours),
+        "seeds_theirs": len(theirs),
+        "score_ours": ours["score"].mean(),
+        "score_theirs": theirs_score,
+        "score_difference": score.estimate,
+        "score_low": score.low,
+        "score_high": score.high,
+        "score_relative": score.estimate / theirs_score if theirs_score > 0 else math.nan,
+        "score_fits": abs(score.estimate) <= tolerance or score.low <= 0 <= score.high,
+        "share_ours": ours["share"].mean(),
+        "share_theirs": theirs_share,
+        "share_difference": share_difference,
+        "share_fits": abs(share_difference) <= SHARE_TOLERANCE + _ROUNDING,
+    }
+
+
+def argos_table(frame: pd.DataFrame) -> PrintedTable:
     """Print what `against_argos` returns, a line for each row."""
     header = [
         *("scenario", "N", "swarm", "pucks", "ARGoS", "difference (95 % interval)", "relative", "fits"),
@@ -116,7 +119,7 @@ def printed(frame: pd.DataFrame) -> PrintedTable:
 
 def markdown_table(frame: pd.DataFrame) -> str:
     """Write what `against_argos` returns as a Markdown table, a line for each row; misfits are bold."""
-    return printed(frame).to_markdown().replace("| no |", "| **no** |")
+    return argos_table(frame).to_markdown().replace("| no |", "| **no** |")
 
 
 def _verdict(fits: bool) -> str:
@@ -146,21 +149,3 @@ def _argos_games() -> pd.DataFrame:
             )
         )
     return pd.concat(swarms)
-
-
-def _summary(games: pd.DataFrame) -> pd.DataFrame:
-    return games.groupby(_ROW).agg(
-        seeds=("score", "size"), score=("score", "mean"), variance=("score", "var"), share=("share", "mean")
-    )
-
-
-def _reach(both: pd.DataFrame) -> pd.Series:
-    """Half the width of Welch's interval of a difference of means, from variances and numbers of games."""
-    ours = both["variance_ours"] / both["seeds_ours"]
-    theirs = both["variance_theirs"] / both["seeds_theirs"]
-    freedom = (ours + theirs) ** 2 / (
-        ours**2 / (both["seeds_ours"] - 1) + theirs**2 / (both["seeds_theirs"] - 1)
-    )
-    quantile = stats.t.ppf(0.5 + CONFIDENCE / 2, freedom.to_numpy())
-    # Scores that never vary leave no freedom: the interval is the difference itself.
-    return (quantile * (ours + theirs) ** 0.5).mask(ours + theirs == 0, 0.0)

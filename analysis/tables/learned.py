@@ -1,8 +1,7 @@
 """Tables of what swarms learned, from the rows of `policies.parquet`, beside the published numbers.
 
 A cell is the percentage of a swarm's robots that learned to attack another swarm, or to flee within their
-own: the mean over the seeds, with the 95 % interval of that mean by Student's t (`scipy.stats`), cut at 0
-and 100 %. A single seed has no interval.
+own: the mean over the seeds, with its 95 % interval.
 """
 
 from collections.abc import Sequence
@@ -11,14 +10,14 @@ import pandas as pd
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.results.published import learned_percentages
-from kswarms.analysis.statistics.intervals import student_reach
-from kswarms.analysis.text_tables import PrintedTable, number, span, with_interval
+from kswarms.analysis.statistics.means import describe_seeds, with_intervals
+from kswarms.analysis.text_tables import PrintedTable, number, with_interval
 
 _COLUMN = ["scenario", "condition", "swarm", "opponent"]
 _CELL = [*_COLUMN, "n"]
 
 
-def learned(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataFrame:
+def learned_shares(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataFrame:
     """Say how many robots learned to attack others and to flee within, for each curve and density.
 
     Parameters
@@ -37,7 +36,7 @@ def learned(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataFrame:
         * `learned` (str): ``attack``, of another swarm, or ``flight within``, of the own;
         * `seeds` (int64): games;
         * `measured` (float64, %): mean over the seeds;
-        * `low`, `high` (float64, %): the 95 % interval of that mean, NaN for a single seed;
+        * `low`, `high` (float64, %): its 95 % interval, NaN for fewer than six seeds;
         * `published` (float64, %): the source's number, NaN where it gives none;
         * `error` (float64, percentage points): measured − published.
 
@@ -57,18 +56,9 @@ def learned(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataFrame:
         learned=within.map({True: "flight within", False: "attack"}),
         percent=100 * rows["attack_share"].where(~within, 1 - rows["attack_share"]),
     )
-    cells = (
-        rows.groupby([*_CELL, "learned"])["percent"]
-        .agg(seeds="size", measured="mean", deviation="sem")
-        .reset_index()
-        .merge(learned_percentages(), how="left", on=["scenario", "learned", "n"])
-    )
-    reach = student_reach(cells["deviation"].to_numpy(), cells["seeds"].to_numpy())
-    cells = cells.assign(
-        low=(cells["measured"] - reach).clip(lower=0),
-        high=(cells["measured"] + reach).clip(upper=100),
-        error=cells["measured"] - cells["published"],
-    )
+    cells = with_intervals(rows, [*_CELL, "learned"], "percent").rename(columns={"mean": "measured"})
+    cells = cells.merge(learned_percentages(), how="left", on=["scenario", "learned", "n"])
+    cells["error"] = cells["measured"] - cells["published"]
     order = {scenario: index for index, scenario in enumerate(scenarios)}
     cells = cells.sort_values(
         _CELL, key=lambda values: values.map(order) if values.name == "scenario" else values
@@ -82,18 +72,18 @@ def mean_absolute_error(cells: pd.DataFrame) -> float:
     Parameters
     ----------
     cells : pandas.DataFrame
-        As `learned` returns them.
+        As `learned_shares` returns them.
     """
     return float(cells["error"].abs().mean())
 
 
-def printed(cells: pd.DataFrame) -> PrintedTable:
+def learned_table(cells: pd.DataFrame) -> PrintedTable:
     """Put cells into the form of the source's tables: a row for each N, a column for each curve.
 
     Parameters
     ----------
     cells : pandas.DataFrame
-        As `learned` returns them.
+        As `learned_shares` returns them.
 
     Returns
     -------
@@ -122,7 +112,7 @@ def named_columns(cells: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     Parameters
     ----------
     cells : pandas.DataFrame
-        As `learned` returns them.
+        As `learned_shares` returns them.
     """
     telling = [part for part in ("scenario", "condition", "learned") if cells[part].nunique() > 1]
     opponents = cells.groupby(["scenario", "condition", "swarm", "learned"])["opponent"].nunique()
@@ -137,9 +127,8 @@ def named_columns(cells: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
 
 
 def _caption(cells: pd.DataFrame, errors: Sequence[str]) -> str:
-    few, many = cells["seeds"].min(), cells["seeds"].max()
-    seeds = f"mean of {span(few, many)} seeds (95 % interval, Student's t)"
-    caption = f"percent of the learning swarm's robots; {seeds if many > 1 else 'one seed'}"
+    seeds = describe_seeds(cells["seeds"].min(), cells["seeds"].max())
+    caption = f"percent of the learning swarm's robots; {seeds}"
     compared = cells["error"].notna().sum()
     if compared:
         caption += f"\nmean absolute error, percentage points: {', '.join(errors)}"

@@ -4,8 +4,8 @@ import pandas as pd
 
 from kswarms.analysis.figures.over_n import TIME_SHARES, of_scenario, quantities, with_time_shares
 from kswarms.analysis.figures.style import curves_of
-from kswarms.analysis.statistics.means import summary
-from kswarms.analysis.text_tables import PrintedTable, span, with_interval
+from kswarms.analysis.statistics.means import describe_seeds, mean_by_n
+from kswarms.analysis.text_tables import PrintedTable, with_interval
 
 _UNITS = {"pucks": "pucks deposited by the swarm", "sud": "SUD of S2 (pucks)"}
 
@@ -25,7 +25,7 @@ def scores(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
     pandas.DataFrame
         One row for each `quantity` (str: ``pucks``, ``sud`` or a kind of time share), `curve` (str: its name
         in the figure's legend) and `n` (int64), with `seeds` (int64), `mean`, `low`, `high` (float64): mean
-        over the seeds and its 95 % bootstrap interval, NaN where there is one seed.
+        over the seeds and its 95 % interval, NaN for fewer than six seeds.
 
     Raises
     ------
@@ -39,14 +39,14 @@ def scores(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
     elif shown == TIME_SHARES:
         rows = with_time_shares(rows)
     parts = [
-        summary(curve.rows, quantity, by=()).assign(quantity=quantity, curve=curve.label)
+        mean_by_n(curve.rows, quantity, by=()).assign(quantity=quantity, curve=curve.label)
         for quantity in shown
         for curve in curves_of(rows)
     ]
     return pd.concat(parts, ignore_index=True)[["quantity", "curve", "n", "seeds", "mean", "low", "high"]]
 
 
-def printed(frame: pd.DataFrame) -> PrintedTable:
+def scores_table(frame: pd.DataFrame) -> PrintedTable:
     """Print what `scores` returns: a row for each N, a column for each curve and quantity."""
     densities = sorted(set(frame["n"]))
     several = frame["quantity"].nunique() > 1
@@ -58,6 +58,5 @@ def printed(frame: pd.DataFrame) -> PrintedTable:
         cells = zip(by_density["mean"], by_density["low"], by_density["high"], strict=True)
         columns.append([with_interval(*cell, form) for cell in cells])
     unit = "share of time in conflict" if several else _UNITS[frame["quantity"].iloc[0]]
-    few, many = frame["seeds"].min(), frame["seeds"].max()
-    seeds = f"mean of {span(few, many)} seeds (95 % bootstrap interval)" if many > 1 else "one seed"
+    seeds = describe_seeds(frame["seeds"].min(), frame["seeds"].max())
     return PrintedTable(header, [list(row) for row in zip(*columns, strict=True)], f"{unit}; {seeds}")

@@ -73,8 +73,9 @@ def contribution(
     check_seed("first_seed", first_seed)
     workers = count_workers(jobs)
 
-    from kswarms.analysis.figures.contribution import draw, printed
+    from kswarms.analysis.figures.contribution import draw
     from kswarms.analysis.measures.contribution import of_question, read, time_sud
+    from kswarms.analysis.tables.contribution import contribution_tables
     from kswarms.scenarios.contribution.games import contributions, robots_of
     from kswarms.scenarios.contribution.table import prepare_table, write_table
 
@@ -93,7 +94,7 @@ def contribution(
     question: dict[str, Any] = {"condition": name, "n": n, "absent_from": absent_from}
     typer.echo(f"figure: {draw(out, scenario.title, scenario=scenario.id, **question)}")
     rows = of_question(read(out), scenario=scenario.id, **question)
-    for heading, (header, *lines) in printed(rows):
+    for heading, (header, *lines) in contribution_tables(rows):
         print_table(heading, header, lines)
 
 

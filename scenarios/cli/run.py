@@ -150,8 +150,8 @@ def _warn(message: str) -> None:
 
 def _print_table(table_id: str, out: Path) -> None:
     from kswarms.analysis.results.runs import read_policies
-    from kswarms.analysis.tables.learned import learned, printed
+    from kswarms.analysis.tables.learned import learned_shares, learned_table
 
     title, scenarios = TABLES[table_id]
-    text = printed(learned(read_policies(out), scenarios))
+    text = learned_table(learned_shares(read_policies(out), scenarios))
     print_table(f"{table_id}: {title}", text.header, text.rows, text.caption)

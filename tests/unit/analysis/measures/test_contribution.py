@@ -11,19 +11,21 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.figures.contribution import draw, printed, scatter
+from kswarms.analysis.figures.contribution import draw, scatter
 from kswarms.analysis.measures.contribution import (
     FILE,
     assumption,
-    means,
+    mean_contributions,
     measures_of,
     of_question,
-    rank_correlation,
     rank_correlations,
     read,
+    spearman,
     time_sud,
 )
 from kswarms.analysis.measures.utilities import robot_utilities, swarm_utilities
+from kswarms.analysis.statistics.intervals import bootstrap_interval
+from kswarms.analysis.tables.contribution import contribution_tables
 
 SEEDS, ROBOTS = 12, 8
 
@@ -74,26 +76,27 @@ def test_questions_are_told_apart() -> None:
 # Means.
 
 
-def test_means_have_students_interval_over_the_seeds() -> None:
+def test_means_have_bootstrap_intervals_over_the_seeds() -> None:
     contribution = noise(5.0) + np.arange(ROBOTS)
-    found = means(of_question(table(time_sud=contribution)))
+    found = mean_contributions(of_question(table(time_sud=contribution)))
     assert found["robot"].tolist() == [*range(20, 28), -1]
     for k, row in enumerate(found.to_dict("records")):
         sample = contribution[:, k] if k < ROBOTS else contribution.mean(axis=1)
-        expected = stats.ttest_1samp(sample, 0.0).confidence_interval(0.95)
-        assert (row["time_low"], row["time_high"]) == pytest.approx((expected.low, expected.high))
+        expected = bootstrap_interval(np.sort(sample))
+        assert (row["time_low"], row["time_high"]) == pytest.approx((expected.low, expected.high), abs=0.05)
         assert row["time"] == pytest.approx(sample.mean())
         assert row["seeds"] == SEEDS
 
 
 def test_swarms_have_means_of_their_own() -> None:
-    found = means(of_question(pd.concat([table(swarm=1, sud=3), table(swarm=2, sud=-1)])))
+    found = mean_contributions(of_question(pd.concat([table(swarm=1, sud=3), table(swarm=2, sud=-1)])))
     assert found[found["robot"] < 0][["swarm", "pucks"]].to_numpy().tolist() == [[1, 3.0], [2, -1.0]]
 
 
-def test_one_seed_has_no_interval() -> None:
-    rows = of_question(table(seeds=1, time_sud=noise(shape=(1, ROBOTS)), reward=np.arange(8.0)))
-    assert means(rows)[["time_low", "time_high", "reward_low"]].isna().all(axis=None)
+@pytest.mark.parametrize("seeds", [1, 5])
+def test_fewer_than_six_seeds_have_no_interval(seeds: int) -> None:
+    rows = of_question(table(seeds=seeds, time_sud=noise(shape=(seeds, ROBOTS)), reward=np.arange(8.0)))
+    assert mean_contributions(rows)[["time_low", "time_high", "reward_low"]].isna().all(axis=None)
     found = rank_correlations(rows).set_index("measure").loc["time"]
     assert not np.isnan(found["robots"])
     assert np.isnan(found[["robots_low", "robots_high", "games_low"]].tolist()).all()
@@ -108,7 +111,7 @@ def test_one_seed_has_no_interval() -> None:
 def test_the_rank_correlation_is_scipys(seed: int, values: int, robots: int) -> None:
     draws = np.random.default_rng(seed)
     both = draws.integers(0, values, size=(2, 4, robots)).astype(float)
-    found = rank_correlation(*both)
+    found = spearman(*both)
     for first, second, one in zip(*both, found, strict=True):
         if len(set(first)) > 1 and len(set(second)) > 1:
             assert one == pytest.approx(stats.spearmanr(first, second).statistic)
@@ -247,7 +250,7 @@ def test_the_scatter_shows_each_robot_where_its_means_are() -> None:
     assert "fig-6.4b: who meets whom, N = 16" in figure.get_suptitle()
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert labels == ["S1: attack", "S2: inter-learner"]
-    found = means(rows)
+    found = mean_contributions(rows)
     for swarm, bars in zip((1, 2), time.containers, strict=True):
         robots = found[(found["swarm"] == swarm) & (found["robot"] >= 0)]
         assert bars.lines[0].get_xydata().tolist() == robots[["reward", "time"]].to_numpy().tolist()
@@ -255,7 +258,7 @@ def test_the_scatter_shows_each_robot_where_its_means_are() -> None:
 
 
 def test_what_is_printed_names_robots_swarms_and_intervals() -> None:
-    (_, robots), (_, ranks), (_, became) = printed(rows_of_two_swarms())
+    (_, robots), (_, ranks), (_, became) = contribution_tables(rows_of_two_swarms())
     assert [line[0] for line in robots[1:]] == [
         *map(str, range(10, 18)),
         "mean of S1",
@@ -266,7 +269,7 @@ def test_what_is_printed_names_robots_swarms_and_intervals() -> None:
     assert [line[:2] for line in ranks[1:]] == [["S1", "pucks"], ["S1", "s"], ["S2", "pucks"], ["S2", "s"]]
     assert ranks[1][2:] == ["–", "–"]
     assert became[1] == ["S1", "mates", "100.0", "100.0", "100.0", "100.0", "100.0", "0.00 (0.00 … 0.00)"]
-    assert printed(of_question(table(seeds=1)))[0][1][1][2] == "0.00"
+    assert contribution_tables(of_question(table(seeds=1)))[0][1][1][2] == "0.00"
 
 
 def test_a_figure_is_written_from_the_table(tmp_path: Path) -> None:

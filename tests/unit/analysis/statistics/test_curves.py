@@ -1,4 +1,4 @@
-"""Curves over N whose crossings and ranks are known."""
+"""Crossings and trends of curves with known answers."""
 
 import math
 
@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.statistics.curves import crossings, overtaking, rank_correlation
+from kswarms.analysis.statistics.curves import crossings, overtaking, rank_correlation_with_n
 from kswarms.analysis.statistics.intervals import Interval
+from tests.helpers.chance import is_plausible
 
 DENSITIES = (6, 16, 26, 36, 46)
 
@@ -47,33 +48,33 @@ def test_a_curve_overtakes_at_its_last_crossing() -> None:
     assert 29 < found.for_good.low < found.for_good.estimate < found.for_good.high < 30
 
 
-def test_who_is_always_ahead_never_overtakes() -> None:
+def test_a_curve_that_is_always_ahead_never_overtakes() -> None:
     found = overtaking(DENSITIES, seeds_around([5, 5, 5, 5, 5], noise=0.1))
     assert found.crossings == ()
     assert found.for_good == Interval(-math.inf, -math.inf, -math.inf)
 
 
 @pytest.mark.parametrize("curve", [[-5, -5, -5, -5, -5], [5, 5, 5, 5, -5], [5, 5, 5, 5, 0]])
-def test_who_is_behind_at_the_end_has_not_overtaken(curve: list[float]) -> None:
+def test_a_curve_that_is_behind_at_the_end_has_not_overtaken(curve: list[float]) -> None:
     values = np.tile(np.asarray(curve, dtype=np.float64), (8, 1))
     assert overtaking(DENSITIES, values).for_good == Interval(math.inf, math.inf, math.inf)
 
 
-def test_a_lead_in_doubt_leaves_the_interval_open() -> None:
+def test_an_uncertain_lead_at_the_end_leaves_the_interval_open() -> None:
     found = overtaking(DENSITIES, seeds_around([-9, -9, -9, -9, 0.1]))
     assert 45 < found.for_good.estimate < 46
     assert found.for_good.high == math.inf
     assert found.for_good.low > 44
 
 
-def test_curves_that_run_together_may_have_crossed_anywhere() -> None:
+def test_curves_that_hardly_differ_may_have_crossed_anywhere() -> None:
     found = overtaking(DENSITIES, seeds_around([0.1, -0.1, 0.1, -0.1, 5]))
     assert found.for_good.low == -math.inf
     assert 36 < found.for_good.high < 38
 
 
 @pytest.mark.slow
-def test_the_interval_of_a_crossing_covers_the_truth_about_as_often_as_it_says() -> None:
+def test_the_interval_of_a_crossing_covers_the_true_one_as_often_as_its_level() -> None:
     # The line through 0 at N = 30, where the noise of the means is a fifth of the slope between densities.
     line, count = np.array([-2.4, -1.4, -0.4, 0.6, 1.6]), 200
     draws = np.random.default_rng(3)
@@ -81,43 +82,42 @@ def test_the_interval_of_a_crossing_covers_the_truth_about_as_often_as_it_says()
     for _ in range(count):
         interval = overtaking(DENSITIES, line + draws.normal(scale=0.9, size=(20, 5))).for_good
         hits += interval.low <= 30 <= interval.high
-    low, high = stats.binom.interval(0.999, count, 0.95)
-    assert low <= hits <= high, hits / count
+    assert is_plausible(0.95, hits, count), hits / count
 
 
 def test_rank_correlation_is_spearmans() -> None:
     curve = [1.0, 3.0, 2.0, 5.0, 5.0]
-    correlation = rank_correlation(DENSITIES, seeds_around(curve, noise=0.001))
+    correlation = rank_correlation_with_n(DENSITIES, seeds_around(curve, noise=0.001))
     assert correlation.estimate == pytest.approx(stats.spearmanr(DENSITIES, curve).statistic, abs=0.06)
     values = np.tile(curve, (8, 1))
-    assert rank_correlation(DENSITIES, values).estimate == pytest.approx(
+    assert rank_correlation_with_n(DENSITIES, values).estimate == pytest.approx(
         stats.spearmanr(DENSITIES, curve).statistic
     )
 
 
-def test_a_rise_has_rank_correlation_1_and_noise_has_any() -> None:
-    rise = rank_correlation(DENSITIES, seeds_around([0, 10, 20, 30, 40], noise=0.1))
+def test_a_rise_has_rank_correlation_1_and_noise_has_any_value() -> None:
+    rise = rank_correlation_with_n(DENSITIES, seeds_around([0, 10, 20, 30, 40], noise=0.1))
     assert rise == Interval(1.0, 1.0, 1.0)
-    level = rank_correlation(DENSITIES, seeds_around([0.0, 0.1, 0.0, 0.1, 0.0]))
+    level = rank_correlation_with_n(DENSITIES, seeds_around([0.0, 0.1, 0.0, 0.1, 0.0]))
     assert level.low < 0 < level.high
 
 
-def test_a_level_curve_has_no_ranks() -> None:
-    assert rank_correlation(DENSITIES, np.ones((8, 5))) == Interval(0.0, 0.0, 0.0)
+def test_a_constant_curve_has_rank_correlation_0() -> None:
+    assert rank_correlation_with_n(DENSITIES, np.ones((8, 5))) == Interval(0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize(
     ("densities", "values", "complaint"),
     [
-        ((6,), np.ones((8, 1)), "densities=.*must be two or more that ascend"),
-        ((16, 6), np.ones((8, 2)), "must be two or more that ascend"),
+        ((6,), np.ones((8, 1)), "densities=.*must be two or more, in ascending order"),
+        ((16, 6), np.ones((8, 2)), "must be two or more, in ascending order"),
         ((6, 16), np.ones((8, 3)), "must have 2 densities along the last axis"),
-        ((6, 16), np.ones(2), r"must be of the shape \(seeds, densities\)"),
+        ((6, 16), np.ones(2), r"must have the shape \(seeds, densities\)"),
     ],
 )
-def test_samples_that_are_no_curve(
+def test_invalid_samples_are_refused(
     densities: tuple[int, ...], values: NDArray[np.float64], complaint: str
 ) -> None:
-    for function in (overtaking, rank_correlation):
+    for function in (overtaking, rank_correlation_with_n):
         with pytest.raises(InputError, match=complaint):
             function(densities, values)

@@ -1,4 +1,4 @@
-"""Tables of what was learned, on made-up policies whose shares and intervals are known."""
+"""Tables of learned shares, from policies with known shares and intervals."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -8,7 +8,8 @@ import pytest
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.results.published import learned_percentages
-from kswarms.analysis.tables.learned import learned, mean_absolute_error, printed
+from kswarms.analysis.statistics.intervals import bootstrap_interval
+from kswarms.analysis.tables.learned import learned_shares, learned_table, mean_absolute_error
 
 Column = tuple[str, str, int]  # scenario, condition, opponent of S2
 
@@ -35,46 +36,36 @@ def policies(shares: Mapping[Column, Mapping[int, Sequence[float]]]) -> pd.DataF
     )
 
 
-def test_a_cell_is_the_mean_over_the_seeds_with_the_interval_of_student() -> None:
-    cells = learned(policies({("fig-x", "", 1): {6: [0.1, 0.2, 0.3, 0.4]}}), ["fig-x"])
-    (cell,) = cells.to_dict("records")
-    assert cell["seeds"] == 4
-    assert cell["measured"] == pytest.approx(25)
-    # s = sqrt(500/3) = 12.910, s / sqrt(4) = 6.455, t(3; 0.975) = 3.18245
-    assert cell["high"] - 25 == pytest.approx(20.543, abs=0.001)
-    assert 25 - cell["low"] == pytest.approx(20.543, abs=0.001)
-    assert math.isnan(cell["published"])
-    assert math.isnan(cell["error"])
+def test_a_cell_is_the_mean_over_the_seeds_with_its_bootstrap_interval() -> None:
+    attacks = [0.1, 0.2, 0.3, 0.4, 0.4, 0.4]
+    made = policies({("fig-x", "", 1): {6: attacks, 10: [0.5] * 3, 16: [0.5] * 6}})
+    first, few, equal = learned_shares(made, ["fig-x"]).to_dict("records")
+    interval = bootstrap_interval([100 * share for share in attacks])
+    assert first["seeds"] == 6
+    assert first["measured"] == pytest.approx(30)
+    assert (first["low"], first["high"]) == pytest.approx((interval.low, interval.high))
+    assert math.isnan(first["published"])
+    assert math.isnan(first["error"])
+    assert (few["seeds"], few["measured"]) == (3, 50)
+    assert math.isnan(few["low"])
+    assert math.isnan(few["high"])
+    assert (equal["low"], equal["measured"], equal["high"]) == (50, 50, 50)
 
 
-def test_the_interval_stays_between_nothing_and_all() -> None:
-    (cell,) = learned(policies({("fig-x", "", 1): {6: [0.4, 0.6]}}), ["fig-x"]).to_dict("records")
-    assert (cell["low"], cell["measured"], cell["high"]) == (0, pytest.approx(50), 100)
-
-
-def test_seeds_that_agree_leave_no_interval_and_one_seed_has_none() -> None:
-    cells = learned(policies({("fig-x", "", 1): {6: [0.5, 0.5, 0.5], 10: [0.5]}}), ["fig-x"])
-    three, one = cells.to_dict("records")
-    assert (three["low"], three["measured"], three["high"]) == (50, 50, 50)
-    assert (one["seeds"], one["measured"]) == (1, 50)
-    assert math.isnan(one["low"])
-    assert math.isnan(one["high"])
-
-
-def test_of_the_own_swarm_flight_is_counted() -> None:
-    cells = learned(policies({("fig-6.6", "", 2): {6: [0.0, 0.1]}}), ["fig-6.6"])
+def test_flight_counts_within_the_own_swarm() -> None:
+    cells = learned_shares(policies({("fig-6.6", "", 2): {6: [0.0, 0.1]}}), ["fig-6.6"])
     assert list(cells["learned"]) == ["flight within"]
     assert list(cells["measured"]) == pytest.approx([95])
 
 
-def test_a_share_counts_once_however_many_actions_there_are() -> None:
+def test_a_share_counts_once_for_any_number_of_actions() -> None:
     rows = policies({("fig-x", "", 1): {6: [0.2, 0.4]}})
     third = rows[(rows["action"] == "fight") & (rows["seed"] == 0)].assign(action="ram")
-    (cell,) = learned(pd.concat([rows, third]), ["fig-x"]).to_dict("records")
+    (cell,) = learned_shares(pd.concat([rows, third]), ["fig-x"]).to_dict("records")
     assert (cell["seeds"], cell["measured"]) == (2, pytest.approx(30))
 
 
-def test_published_numbers_stand_beside_those_of_the_same_figure_density_and_kind() -> None:
+def test_published_numbers_match_figure_density_and_kind() -> None:
     made = policies(
         {
             ("fig-6.8", "", 2): {26: [0.0]},
@@ -82,7 +73,7 @@ def test_published_numbers_stand_beside_those_of_the_same_figure_density_and_kin
             ("fig-6.4a", "", 1): {26: [0.5]},
         }
     )
-    cells = learned(made, ["fig-6.8", "fig-6.4a"])
+    cells = learned_shares(made, ["fig-6.8", "fig-6.4a"])
     shown = cells[["scenario", "learned", "n", "published"]].to_numpy().tolist()
     assert shown[0] == ["fig-6.8", "attack", 26, 15.7]
     assert shown[1][:3] == ["fig-6.8", "attack", 28]
@@ -91,14 +82,14 @@ def test_published_numbers_stand_beside_those_of_the_same_figure_density_and_kin
     assert list(cells["error"].dropna()) == pytest.approx([20 - 15.7, 0, 50 - 31.9])
 
 
-def test_the_mean_absolute_error_is_over_the_cells_that_were_published() -> None:
+def test_the_mean_absolute_error_covers_the_published_cells() -> None:
     made = policies({("fig-6.4a", "", 1): {6: [0.116], 10: [0.0], 12: [1.0]}})
-    cells = learned(made, ["fig-6.4a"])
+    cells = learned_shares(made, ["fig-6.4a"])
     assert mean_absolute_error(cells) == pytest.approx((10 + 2) / 2)
     assert math.isnan(mean_absolute_error(cells[cells["n"] == 12]))
 
 
-def test_the_source_beside_itself_has_no_error() -> None:
+def test_the_published_numbers_have_no_error() -> None:
     published = learned_percentages()
     made = {
         (scenario, "", 2 if kind == "flight within" else 1): {
@@ -107,22 +98,25 @@ def test_the_source_beside_itself_has_no_error() -> None:
         }
         for (scenario, kind), rows in published.groupby(["scenario", "learned"])
     }
-    cells = learned(policies(made), ["fig-6.4a", "fig-6.4b", "fig-6.8"])
+    cells = learned_shares(policies(made), ["fig-6.4a", "fig-6.4b", "fig-6.8"])
     assert len(cells) == len(published) == 40
     assert mean_absolute_error(cells) == pytest.approx(0)
 
 
-def test_scenarios_in_which_nobody_learned() -> None:
+def test_scenarios_without_learners_are_refused() -> None:
     made = policies({("fig-6.4a", "", 1): {6: [0.0]}})
     with pytest.raises(InputError, match=r"^scenarios=\['fig-6\.1a'\]: must include one .*: fig-6\.4a$"):
-        learned(made, ["fig-6.1a"])
+        learned_shares(made, ["fig-6.1a"])
 
 
-def test_printed_with_published_numbers() -> None:
+def test_the_table_shows_published_beside_measured_numbers() -> None:
     made = policies(
-        {("fig-6.4a", "", 1): {6: [0.0, 0.0], 26: [0.4, 0.6]}, ("fig-6.4b", "", 1): {26: [0.13, 0.13]}}
+        {
+            ("fig-6.4a", "", 1): {6: [0.0] * 6, 26: [0.4] * 3 + [0.6] * 3},
+            ("fig-6.4b", "", 1): {26: [0.13] * 6},
+        }
     )
-    table = printed(learned(made, ["fig-6.4a", "fig-6.4b"]))
+    table = learned_table(learned_shares(made, ["fig-6.4a", "fig-6.4b"]))
     assert table.header == [
         "N",
         "fig-6.4a\npublished",
@@ -132,33 +126,31 @@ def test_printed_with_published_numbers() -> None:
     ]
     assert table.rows == [
         ["6", "1.6", "0.0 (0.0 … 0.0)", "–", "–"],
-        ["26", "31.9", "50.0 (0.0 … 100.0)", "3.0", "13.0 (13.0 … 13.0)"],
+        ["26", "31.9", "50.0 (40.0 … 60.0)", "3.0", "13.0 (13.0 … 13.0)"],
     ]
     first, second = table.caption.splitlines()
-    assert first == "percent of the learning swarm's robots; mean of 2 seeds (95 % interval, Student's t)"
+    assert first == "percent of the learning swarm's robots; mean of 6 seeds (95 % interval)"
     # (1.6 + 18.1) / 2, 10, and (1.6 + 18.1 + 10) / 3
-    assert second == (
-        "mean absolute error, percentage points: fig-6.4a 9.9, fig-6.4b 10.0, all 3 cells 9.9"
-    )
+    assert second == ("mean absolute error, percentage points: fig-6.4a 9.9, fig-6.4b 10.0, all 3 cells 9.9")
 
 
-def test_printed_without_published_numbers() -> None:
+def test_the_table_without_published_numbers() -> None:
     made = policies({("fig-6.12", "delta=0.25", 1): {6: [0.5]}, ("fig-6.12", "delta=0.02", 1): {6: [0.25]}})
-    table = printed(learned(made, ["fig-6.12"]))
+    table = learned_table(learned_shares(made, ["fig-6.12"]))
     assert table.header == ["N", "delta=0.02\nmeasured", "delta=0.25\nmeasured"]
     assert table.rows == [["6", "25.0", "50.0"]]
     assert table.caption == "percent of the learning swarm's robots; one seed"
 
 
-def test_printed_by_what_was_learned() -> None:
+def test_columns_are_named_by_what_differs() -> None:
     made = policies({("fig-6.8", "", 1): {6: [0.5] * 3}, ("fig-6.8", "", 2): {6: [0.0] * 2}})
-    table = printed(learned(made, ["fig-6.8"]))
+    table = learned_table(learned_shares(made, ["fig-6.8"]))
     assert [heading.splitlines()[0] for heading in table.header[1:]] == [
         *("attack", "attack"),
         *("flight within", "flight within"),
     ]
     assert "mean of 2 to 3 seeds" in table.caption
     assert "attack 50.0, flight within 0.0, all 2 cells 25.0" in table.caption
-    alone = printed(learned(made[made["opponent"] == 1], ["fig-6.8"]))
+    alone = learned_table(learned_shares(made[made["opponent"] == 1], ["fig-6.8"]))
     assert alone.header == ["N", "attack\npublished", "attack\nmeasured"]
     assert alone.caption.endswith("percentage points: attack 50.0")

@@ -1,0 +1,201 @@
+"""Comparisons of two samples over seeds, correction for multiple tests, and the number of seeds needed."""
+
+import math
+import warnings
+from bisect import bisect_left
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy import stats
+from statsmodels.stats.multitest import multipletests
+from statsmodels.stats.power import TTestPower
+
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.statistics.intervals import (
+    CONFIDENCE,
+    RANDOM_SEED,
+    RESAMPLES,
+    Interval,
+    bootstrap_interval,
+    check_confidence,
+    check_seeds,
+)
+
+_MOST_SEEDS: Final = 1_000_000
+
+
+@dataclass(frozen=True)
+class PairedComparison:
+    """Comparison of two samples of the same seeds.
+
+    Attributes
+    ----------
+    difference : Interval
+        Mean of first − second, in the unit of the samples.
+    d_z : float
+        Cohen's d_z: mean of the differences divided by their standard deviation. ±inf if all differences are
+        equal and not 0; 0 if all are 0.
+    cliffs_delta : float
+        P(first > second) − P(first < second) over all pairs of values, −1 … 1.
+    p_value : float
+        Two-sided, of the permutation test that swaps the two values of a seed; exact up to 13 seeds.
+    seeds : int
+        Number of pairs.
+    """
+
+    difference: Interval
+    d_z: float
+    cliffs_delta: float
+    p_value: float
+    seeds: int
+
+
+def compare_paired(first: ArrayLike, second: ArrayLike, confidence: float = CONFIDENCE) -> PairedComparison:
+    """Compare two samples of the same seeds.
+
+    Parameters
+    ----------
+    first, second : array_like
+        Shape (seeds,), in the same order of seeds.
+    confidence : float
+        Level of the interval of the difference.
+
+    Raises
+    ------
+    InputError
+        The samples differ in length or hold fewer than two seeds.
+    """
+    one, other = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
+    if one.ndim != 1 or one.shape != other.shape:
+        raise InputError("second", other.shape, f"must have the shape {one.shape}, one value for each seed")
+    check_seeds(one, 2)
+    test = stats.permutation_test(
+        (one, other),
+        lambda x, y, axis: np.mean(x - y, axis=axis),
+        permutation_type="samples",
+        vectorized=True,
+        n_resamples=RESAMPLES,
+        rng=np.random.default_rng(RANDOM_SEED),
+    )
+    larger = stats.mannwhitneyu(one, other).statistic / one.size**2
+    return PairedComparison(
+        difference=bootstrap_interval(one - other, confidence=confidence),
+        d_z=effect_size(one - other),
+        cliffs_delta=float(2 * larger - 1),
+        p_value=float(test.pvalue),
+        seeds=one.size,
+    )
+
+
+def compare_independent(first: ArrayLike, second: ArrayLike, confidence: float = CONFIDENCE) -> Interval:
+    """Return the difference of two means of unrelated seeds, with Welch's interval.
+
+    Parameters
+    ----------
+    first, second : array_like
+        Shapes (m,) and (n,).
+    confidence : float
+        Level of the interval.
+
+    Returns
+    -------
+    Interval
+        first − second. The bounds are NaN if a sample holds one value; the interval has width 0 if neither
+        sample varies.
+    """
+    one, other = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
+    difference = float(one.mean() - other.mean())
+    if min(one.size, other.size) < 2:
+        return Interval(difference, math.nan, math.nan)
+    if np.ptp(one) == np.ptp(other) == 0:
+        return Interval(difference, difference, difference)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # one of the samples may be constant
+        bounds = stats.ttest_ind(one, other, equal_var=False).confidence_interval(confidence)
+    return Interval(difference, float(bounds.low), float(bounds.high))
+
+
+def effect_size(differences: ArrayLike) -> float:
+    """Return Cohen's d_z of paired differences; ±inf if all are equal and not 0, 0 if all are 0."""
+    values = np.asarray(differences, dtype=np.float64)
+    mean, deviation = float(values.mean()), float(values.std(ddof=1))
+    if (values == values[0]).all():
+        return math.copysign(math.inf, mean) if mean else 0.0
+    return mean / deviation
+
+
+def adjust_p_values(
+    p_values: Sequence[float], method: Literal["holm", "benjamini-hochberg"] = "holm"
+) -> list[float]:
+    """Correct p-values for multiple tests.
+
+    Parameters
+    ----------
+    p_values : sequence of float
+        P-values of all tests that were made, significant or not.
+    method : str
+        ``holm`` controls the probability of any false finding, ``benjamini-hochberg`` the expected share of
+        false findings.
+
+    Returns
+    -------
+    list of float
+        Corrected p-values in the same order.
+
+    Raises
+    ------
+    InputError
+        A p-value is not between 0 and 1, or the method is unknown.
+    """
+    names = {"holm": "holm", "benjamini-hochberg": "fdr_bh"}
+    if method not in names:
+        raise InputError("method", method, f"must be one of {', '.join(names)}")
+    for p in p_values:
+        if not 0 <= p <= 1:
+            raise InputError("p_values", p, "must be between 0 and 1")
+    if not p_values:
+        return []
+    _, corrected, _, _ = multipletests(p_values, method=names[method])
+    return [float(p) for p in corrected]
+
+
+def more_seeds(differences: ArrayLike, power: float = 0.8, confidence: float = CONFIDENCE) -> int | None:
+    """Return how many additional seeds a test needs to tell the mean difference from 0.
+
+    Parameters
+    ----------
+    differences : array_like
+        Shape (seeds,). Their mean and standard deviation are taken as the true ones.
+    power : float
+        Probability that the test rejects a mean of 0, 0 … 1.
+    confidence : float
+        Level of the two-sided test (Student's t, statsmodels' `TTestPower`).
+
+    Returns
+    -------
+    int or None
+        0 if there are enough; None if a million seeds are too few.
+
+    Raises
+    ------
+    InputError
+        There are fewer than two seeds, or the power or confidence is not between 0 and 1.
+    """
+    values = np.asarray(differences, dtype=np.float64)
+    seeds = check_seeds(values, 2)
+    check_confidence(confidence)
+    if not 0 < power < 1:
+        raise InputError("power", power, "must be between 0 and 1")
+    size = abs(effect_size(values))
+    test = TTestPower()
+
+    def is_enough(count: int) -> bool:
+        # NaN for very large effects.
+        return not test.power(size, count, 1 - confidence) < power
+
+    # The solver of statsmodels fails at large effects.
+    more = bisect_left(range(seeds, _MOST_SEEDS), True, key=is_enough)
+    return more if seeds + more < _MOST_SEEDS else None
