@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import special, stats
+from scipy import special
 
 from kswarms.agents.common.errors import InputError
 
@@ -110,7 +110,7 @@ def bootstrap_intervals(
     if seeds < fewest_seeds(confidence):
         return estimate, np.full_like(estimate, -np.inf), np.full_like(estimate, np.inf)
     resampled = np.sort(of_means(_seed_counts(seeds), seeds))
-    reach = math.sqrt(seeds / (seeds - 1)) * stats.t.ppf((1 + confidence) / 2, seeds - 1)
+    reach = math.sqrt(seeds / (seeds - 1)) * special.stdtrit(seeds - 1, (1 + confidence) / 2)
     if not smooth:
         undefined = np.full_like(estimate, np.nan)
         low, high = (_quantile(resampled, undefined, z) for z in (-reach, reach))

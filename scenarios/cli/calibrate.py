@@ -35,7 +35,7 @@ def calibrate(
         int, typer.Option(help="Points in a generation, at least 4; 0 for the usual number.")
     ] = 0,
     validation_seeds: Annotated[
-        int, typer.Option(help="Games for each cell in the validation, at least 5.")
+        int, typer.Option(help="Games for each cell in the validation, at least 6.")
     ] = 20,
     jobs: Jobs = None,
     out: Annotated[

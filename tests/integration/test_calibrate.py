@@ -13,7 +13,7 @@ from kswarms.scenarios.cli import invoke
 
 TINY = [
     *("calibrate", "--free", "friction,gamma", "--densities", "6", "--seeds", "1", "--generations", "2"),
-    *("--population", "4", "--validation-seeds", "5"),
+    *("--population", "4", "--validation-seeds", "6"),
 ]
 
 # A fit of stubbed games whose process kills itself after so many of them, with what it measured saved or not.

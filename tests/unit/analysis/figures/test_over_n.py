@@ -147,7 +147,7 @@ def test_labels_title_and_seeds() -> None:
 
 
 def test_one_density_has_a_bar_for_each_interval() -> None:
-    figure = pucks_over_n(runs_of("fig-x", densities=[20], seeds=4), "fig-x")
+    figure = pucks_over_n(runs_of("fig-x", densities=[20], seeds=8), "fig-x")
     bars = [drawn for drawn in figure.axes[0].collections if isinstance(drawn, LineCollection)]
     ends = [sorted(segment[:, 1]) for drawn in bars for segment in drawn.get_segments()]
     assert [low < mean < high for (low, high), mean in zip(ends, (30, 40), strict=True)] == [True, True]

@@ -20,7 +20,7 @@ from kswarms.scenarios.runs.run import Run
 
 TARGET = {("avoid", 6): 10.0, ("avoid", 30): 60.0, ("attack", 6): 2.0, ("attack", 30): 30.0}
 TINY = Setup(
-    free=("friction", "gamma"), densities=(6,), seeds=1, generations=3, population=4, validation_seeds=5
+    free=("friction", "gamma"), densities=(6,), seeds=1, generations=3, population=4, validation_seeds=6
 )
 Played = Generator[tuple[Run, float], None, None]
 
@@ -95,8 +95,8 @@ def test_points_of_a_generation_share_seeds_that_no_other_has(tmp_path: Path) ->
     calibrate(TINY, TARGET, table, tmp_path)
     seeds = [run.seed for run in table.runs]
     assert seeds[:24] == [10_000] * 8 + [10_001] * 8 + [10_002] * 8  # 4 points, 2 cells
-    assert set(seeds[24:]) == set(range(1000, 1005))
-    assert len(seeds[24:]) == 2 * len(TARGET) * 5  # the validation: start and fitted, all cells, 5 seeds
+    assert set(seeds[24:]) == set(range(1000, 1006))
+    assert len(seeds[24:]) == 2 * len(TARGET) * 6  # the validation: start and fitted, all cells, 6 seeds
     assert len({run.digest for run in table.runs}) == len(table.runs)
 
 
@@ -258,7 +258,7 @@ def test_the_start_is_the_default_to_the_last_digit() -> None:
 
 
 def test_all_parameters_are_searched_together_even_from_the_edge(tmp_path: Path) -> None:
-    setup = Setup(densities=(6,), seeds=1, generations=2, validation_seeds=5)
+    setup = Setup(densities=(6,), seeds=1, generations=2, validation_seeds=6)
     trace = calibrate(setup, TARGET, Table(), tmp_path)
     assert len(trace["start"]) == 16
     assert all(0 <= point["push_share"] <= 0.5 for point in trace["generations"][1]["points"])
