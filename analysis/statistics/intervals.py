@@ -110,7 +110,8 @@ def bootstrap_intervals(
     if seeds < fewest_seeds(confidence):
         return estimate, np.full_like(estimate, -np.inf), np.full_like(estimate, np.inf)
     resampled = np.sort(of_means(_seed_counts(seeds), seeds))
-    reach = math.sqrt(seeds / (seeds - 1)) * special.stdtrit(seeds - 1, (1 + confidence) / 2)
+    student = float(special.stdtrit(seeds - 1, (1 + confidence) / 2))
+    reach = math.sqrt(seeds / (seeds - 1)) * student
     if not smooth:
         undefined = np.full_like(estimate, np.nan)
         low, high = (_quantile(resampled, undefined, z) for z in (-reach, reach))

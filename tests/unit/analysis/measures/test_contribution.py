@@ -289,5 +289,5 @@ def test_bad_input_is_told(tmp_path: Path) -> None:
         read(tmp_path)
     table().to_parquet(tmp_path / FILE)
     (tmp_path / "figures").write_text("in the way")
-    with pytest.raises(InputError, match="must be a place that can be written"):
+    with pytest.raises(InputError, match="must be a writable file"):
         draw(tmp_path)
