@@ -36,8 +36,8 @@ docs: $(TEST)  ## build the documentation into site/, notebooks executed, every 
 	NO_MKDOCS_2_WARNING=true $(BIN)/mkdocs build
 
 bench: $(RUN)  ## speed, memory and start-up, with the events and conflicts processed; the report
-	$(BIN)/python benchmarks/bench.py
-	$(BIN)/python benchmarks/report.py
+	$(BIN)/python -m benchmarks.bench
+	$(BIN)/python -m benchmarks.report
 
 full: $(TEST)  ## the tests again, with every outcome at its full number of seeds (long)
 	$(BIN)/python -m pytest -m "full or not full" -o faulthandler_timeout=0

@@ -1,6 +1,6 @@
-"""What a report costs: a made-up complete study, reported on in a process of its own.
+"""Benchmark of the report on a complete study of random numbers, made in a new process.
 
-Run as a script it prints seconds, memory and size, and ends with 1 where they pass what is allowed.
+As a script it prints time, memory and size, and exits with 1 if time or memory is above its bound.
 """
 
 import subprocess
@@ -18,8 +18,8 @@ from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.description.condition import Condition
 from kswarms.scenarios.description.scenario import Scenario
 
-MOST_SECONDS: Final = 120.0
-MOST_MEMORY: Final = 1500
+MAX_SECONDS: Final = 120.0
+MAX_MEMORY: Final = 1500
 """MB"""
 
 _REPORT: Final = """
@@ -37,21 +37,21 @@ def write_study(
     densities: int | None = None,
     seeds: int | None = None,
 ) -> int:
-    """Write `runs.parquet` and `policies.parquet` as if scenarios had been played, of random numbers.
+    """Write `runs.parquet` and `policies.parquet` with random numbers in place of the outcomes of games.
 
     Parameters
     ----------
     directory : Path
-        Where to; it exists.
+        Existing directory.
     scenarios : iterable of Scenario
-        Which.
+        Scenarios.
     densities, seeds : int, optional
-        How many of each scenario's first; all of them if not given.
+        Number of densities and seeds of each scenario; by default all.
 
     Returns
     -------
     int
-        Rows of `runs.parquet`.
+        Number of rows of `runs.parquet`.
     """
     draws = np.random.default_rng(0)
     runs, policies = [], []
@@ -108,21 +108,14 @@ def _learned(condition: Condition, draws: np.random.Generator) -> list[dict[str,
         for opponent in range(len(condition.swarms)):
             if (opponent == k and within) or (opponent != k and beyond):
                 attack = float(draws.uniform())
-                rows += [
-                    {
-                        "swarm": k + 1,
-                        "opponent": opponent + 1,
-                        "action": action,
-                        "share": share,
-                        "attack_share": attack,
-                    }
-                    for action, share in (("flight", 1 - attack), ("fight", attack))
-                ]
+                key = {"swarm": k + 1, "opponent": opponent + 1}
+                for action, share in (("flight", 1 - attack), ("fight", attack)):
+                    rows.append(key | {"action": action, "share": share, "attack_share": attack})
     return rows
 
 
 def main() -> int:
-    """Print what the report on a complete study costs, and return 1 if that is too much."""
+    """Print the cost of the report, and return 1 if it is above a bound, else 0."""
     with tempfile.TemporaryDirectory() as name:
         directory = Path(name)
         rows = write_study(directory)
@@ -133,9 +126,9 @@ def main() -> int:
         seconds = time.perf_counter() - start
         size = (directory / "report.html").stat().st_size / 1e6
     memory = float(done.stdout.splitlines()[-1])
-    print(f"rows of runs {rows:,}; {seconds:.0f} s (at most {MOST_SECONDS:.0f}); ", end="")
-    print(f"{memory:.0f} MB (at most {MOST_MEMORY}); report of {size:.1f} MB")
-    return int(seconds > MOST_SECONDS or memory > MOST_MEMORY)
+    print(f"rows of runs {rows:,}; {seconds:.0f} s (at most {MAX_SECONDS:.0f}); ", end="")
+    print(f"{memory:.0f} MB (at most {MAX_MEMORY}); report of {size:.1f} MB")
+    return int(seconds > MAX_SECONDS or memory > MAX_MEMORY)
 
 
 if __name__ == "__main__":

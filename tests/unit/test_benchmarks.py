@@ -1,4 +1,4 @@
-"""The benchmark in a tiny form: its pieces run, and work that is not done is noticed; no time is judged."""
+"""The benchmarks with tiny games: their functions run, and missing work is an error; times are not judged."""
 
 import subprocess
 from pathlib import Path
@@ -8,9 +8,9 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
-from benchmarks import bench
+from benchmarks import bench, games
 from benchmarks import report as report_benchmark
-from benchmarks.bench import Plan, WorkError, count_work, time_game
+from benchmarks.games import Plan, WorkError, count_work, time_game
 from kswarms.analysis.results.runs import read_policies
 from kswarms.model.game_model import GameModel
 from kswarms.model.kernel.percepts import CONFLICT, WALL
@@ -21,42 +21,42 @@ TINY = Plan("avoid,attack", 6, 30.0)
 
 
 @pytest.fixture
-def sleepless(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Spare the tests that print the tables new processes, which take seconds."""
+def without_new_processes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Replace the measurements that start new processes, which take seconds."""
     monkeypatch.setattr(bench, "peak_memory", lambda code: float(len(code)))
     monkeypatch.setattr(bench, "seconds_to_game", float)
 
 
-def test_the_same_seed_does_the_same_work_and_another_seed_other_work() -> None:
+def test_work_depends_on_the_seed() -> None:
     assert count_work(TINY, 1) == count_work(TINY, 1)
     assert count_work(TINY, 1) != count_work(TINY, 2)
 
 
-def test_what_the_clock_processes_is_counted() -> None:
+def test_processed_events_are_counted() -> None:
     work = count_work(TINY, 1)
     assert 0 < work.conflicts <= work.timeouts < work.events < work.scheduled
 
 
-def test_timing_takes_as_long_as_it_takes() -> None:
+def test_timing_a_game_returns_positive_times() -> None:
     built, played = time_game(TINY, 1, count_work(TINY, 1))
     assert built > 0
     assert played > 0
 
 
-def test_a_game_cut_short_is_noticed_when_it_is_timed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_timing_an_incomplete_game_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     work = count_work(TINY, 1)
     monkeypatch.setattr(GameModel, "play", lambda model: model.env.run(until=150))
     with pytest.raises(WorkError, match="counted"):
         time_game(TINY, 1, work)
 
 
-def test_a_game_cut_short_is_noticed_when_it_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_counting_an_incomplete_game_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(GameModel, "play", lambda model: model.env.run(until=150))
     with pytest.raises(WorkError, match=r"90\.0 robot-seconds played, not 180\.0"):
         count_work(TINY, 1)
 
 
-def test_robots_that_see_nobody_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_game_without_conflicts_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     decide = GameModel._decide
 
     def blind(model: GameModel, now: int, size: int) -> None:
@@ -65,44 +65,44 @@ def test_robots_that_see_nobody_are_noticed(monkeypatch: pytest.MonkeyPatch) -> 
         decide(model, now, size)
 
     monkeypatch.setattr(GameModel, "_decide", blind)
-    with pytest.raises(WorkError, match="too little happened"):
+    with pytest.raises(WorkError, match="too few events"):
         count_work(TINY, 1)
 
 
-def test_the_bare_loop_processes_what_it_is_asked_to(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_bare_loop_processes_the_given_number_of_timeouts(monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[Any] = []
-    timeout = bench.simpy.Environment.timeout
-    monkeypatch.setattr(bench.simpy.Environment, "timeout", lambda env, t: made.append(t) or timeout(env, t))
-    assert bench.time_bare_loop(6, 100) > 0
+    timeout = games.simpy.Environment.timeout
+    monkeypatch.setattr(games.simpy.Environment, "timeout", lambda env, t: made.append(t) or timeout(env, t))
+    assert games.time_bare_loop(6, 100) > 0
     assert len(made) == 100
 
 
-def test_main_prints_a_table_for_each_cost(
-    sleepless: None, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+def test_main_prints_all_tables(
+    without_new_processes: None, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     real = bench.overhead
-    monkeypatch.setattr(bench, "overhead", lambda runs, _jobs: real(runs, 1))  # spares it the processes
+    monkeypatch.setattr(bench, "overhead", lambda runs, _jobs: real(runs, 1))  # without worker processes
     bench.main(seeds=1, repetitions=1, duration=60.0, sizes=(6, 24), runs=20)
     printed = capsys.readouterr().out
     assert printed.count("  bound") == 6
     ((n, side, *_),) = [line.split() for line in printed.splitlines() if line.startswith("  24 ")]
-    assert (n, side) == ("24", "4.0")  # four times the robots on four times the area
+    assert (n, side) == ("24", "4.0")  # four times as many robots on four times the area
 
 
-def test_runs_that_are_not_stored_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_rows_of_a_study_are_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bench.pq, "read_metadata", lambda _path: SimpleNamespace(num_rows=39))
     with pytest.raises(WorkError, match="39 rows stored of 20 runs"):
         bench.overhead(20, 1)
 
 
 @pytest.mark.slow
-def test_new_processes_play_games() -> None:
+def test_memory_and_start_up_of_new_processes() -> None:
     code = "from kswarms import ForagingModel\nForagingModel(n=2, record='', duration=1.0).play()"
     assert bench.peak_memory("pass") < bench.peak_memory(code) < 2000
     assert bench.seconds_to_game(6) > 0
 
 
-def test_a_made_up_study_keeps_the_contract_of_the_tables(tmp_path: Path) -> None:
+def test_a_random_study_has_the_columns_of_a_real_one(tmp_path: Path) -> None:
     scenarios = [CATALOGUE[name] for name in ("fig-6.8", "fig-7.10", "fig-6.15")]
     rows = report_benchmark.write_study(tmp_path, scenarios, densities=1, seeds=2)
     assert rows == 2 * (2 + 5 * 3 + 5)
@@ -117,16 +117,16 @@ def test_a_made_up_study_keeps_the_contract_of_the_tables(tmp_path: Path) -> Non
     }
 
 
-def test_a_report_that_costs_too_much_fails(
+def test_the_report_benchmark_fails_above_a_bound(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def run(words: list[str], **_: object) -> subprocess.CompletedProcess[str]:
         (Path(words[-1]) / "report.html").write_text("page")
-        return subprocess.CompletedProcess(words, 0, "report: …\n320.5\n")
+        return subprocess.CompletedProcess(words, 0, "report: page\n320.5\n")
 
     monkeypatch.setattr(report_benchmark, "write_study", lambda directory: 7)
     monkeypatch.setattr(subprocess, "run", run)
     assert report_benchmark.main() == 0
     assert "rows of runs 7; 0 s (at most 120); 320 MB" in capsys.readouterr().out
-    monkeypatch.setattr(report_benchmark, "MOST_MEMORY", 300)
+    monkeypatch.setattr(report_benchmark, "MAX_MEMORY", 300)
     assert report_benchmark.main() == 1
