@@ -24,7 +24,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.statistics.intervals import bootstrap_interval
 from kswarms.scenarios.calibration.games import START, Cell, Play, Point, Shares, texts, to_place, to_point
 from kswarms.scenarios.description.scenario import DENSITIES
-from kswarms.scenarios.description.toml_files import make_directory, write_json
+from kswarms.scenarios.study.directory import make_directory, write_json
 
 SPREAD: Final = 0.15
 """Standard deviation of the first generation, as a part of the range searched."""

@@ -16,8 +16,8 @@ from kswarms.agents.learning.selection_rules import UCB
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.description.parameters import PRESETS, parse_parameters
 from kswarms.scenarios.description.scenario import LEARNING
-from kswarms.scenarios.description.toml_files import write_json
 from kswarms.scenarios.runs.run import Run, digest
+from kswarms.scenarios.study.directory import write_json
 
 Point = dict[str, float]
 """A value for each free parameter, by name."""

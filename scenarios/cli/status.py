@@ -6,9 +6,16 @@ from typing import Annotated
 import typer
 
 from kswarms.scenarios.cli.printing import format_duration, print_columns
-from kswarms.scenarios.study.database import FILE
+from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.ledger import Ledger
-from kswarms.scenarios.study.summary import by_scenario, codes, failures, in_all
+from kswarms.scenarios.study.lock import lock_holder
+from kswarms.scenarios.study.summary import (
+    failed_runs,
+    points_by_scenario,
+    replay_command,
+    runs_by_code,
+    runs_by_status,
+)
 
 Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Results directory of `kswarms run`.")]
 
@@ -18,21 +25,19 @@ def status(directory: Directory) -> None:
 
     Example: kswarms status results
     """
-    from kswarms.scenarios.study.study import holder, replay_command
-
-    with Ledger(directory / FILE) as ledger:
+    with Ledger(directory / LEDGER_FILE) as ledger:
         heads = ("scenario", "done", "failed", "missing", "CPU time")
-        rows = [(name, *_cells(counts)) for name, counts in by_scenario(ledger).items()]
-        rows.append(("runs, each once", *_cells(in_all(ledger))))
+        rows = [(name, *_cells(counts)) for name, counts in points_by_scenario(ledger).items()]
+        rows.append(("runs, each once", *_cells(runs_by_status(ledger))))
         print_columns([heads, *rows], left=(0,))
         typer.echo()
         sessions = ledger.sessions()
         typer.echo(f"sessions: {len(sessions)}, the first of {sessions[0]['started'] if sessions else '–'}")
-        for code, runs in codes(ledger).items():
+        for code, runs in runs_by_code(ledger).items():
             typer.echo(f"played by: kswarms {code}, {runs} runs")
-        if user := holder(directory):
+        if user := lock_holder(directory):
             typer.echo(f"in use by: {user}")
-        for failed in failures(ledger):
+        for failed in failed_runs(ledger):
             run, scenario, condition, n, seed = failed.point
             label = f"{scenario} {condition}".strip()
             typer.echo(f"\nfailed: {label}, n={n}, seed={seed}: {failed.error}")
@@ -51,7 +56,7 @@ def replay(
     """
     from kswarms.scenarios.runs.play import play
 
-    with Ledger(directory / FILE) as ledger:
+    with Ledger(directory / LEDGER_FILE) as ledger:
         run = ledger.run(wanted)
         kept = ledger.outcome(wanted)
     typer.echo(str(run))

@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 from kswarms.agents.common.atomic_files import remove_unfinished, whole
 from kswarms.agents.common.columns import TABLES
 from kswarms.agents.common.errors import InputError
-from kswarms.scenarios.description.toml_files import make_directory
+from kswarms.scenarios.study.directory import make_directory
 from kswarms.scenarios.study.parquet import arrow_schema
 
 FILE: Final = "contribution.parquet"

@@ -1,11 +1,8 @@
-"""Files that others write or read: scenarios as TOML, JSON that is there whole or not at all."""
+"""Scenarios as TOML files."""
 
-import json
 import tomllib
 from pathlib import Path
-from tempfile import TemporaryFile
 
-from kswarms.agents.common.atomic_files import whole
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.description.scenario import Scenario
 
@@ -43,31 +40,3 @@ def _scenario(place: str, content: object) -> Scenario:
         return Scenario(**content)
     except InputError as error:
         raise InputError(f"{place}: {error.field}", error.value, error.allowed) from None
-
-
-def make_directory(directory: Path) -> None:
-    """Make a directory for results, if need be, and make sure that it can be written to.
-
-    Raises
-    ------
-    InputError
-        If it cannot.
-    """
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        with TemporaryFile(dir=directory):
-            pass
-    except OSError as error:
-        raise InputError("out", str(directory), f"must be a writable directory ({error.strerror})") from error
-
-
-def write_json(path: Path, content: object) -> None:
-    """Write a file of JSON, whole or not at all.
-
-    Raises
-    ------
-    OSError
-        If that fails; then the file is as it was.
-    """
-    with whole(path) as file:
-        file.write_text(json.dumps(content, indent=1) + "\n")

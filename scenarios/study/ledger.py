@@ -1,7 +1,7 @@
-"""The ledger of a study: what was asked for, what came of it, in a SQLite file that survives any death.
+"""The ledger of a study: the requested runs and their results, in an SQLite file that survives crashes.
 
-A run is a row under its digest, so it is played once whoever asks for it; the curves that it belongs to
-are kept apart, one row for each point. Each run is committed by itself, by the one process that writes.
+A run is a row under its digest, so it is played once, however many curves contain it. Its points in these
+curves are rows of another table. Each run is committed on its own, by the one process that writes.
 """
 
 import json
@@ -14,11 +14,14 @@ from kswarms.agents.common.errors import InputError
 from kswarms.model.description.game import Game
 from kswarms.scenarios.runs.outcome import Failure, Outcome
 from kswarms.scenarios.runs.run import Run, code_version, digest
-from kswarms.scenarios.study.database import FILE, Database
+from kswarms.scenarios.study.database import LEDGER_FILE, Database
+
+Curve = tuple[str, str]
+"""Scenario and condition."""
 
 
 class Point(NamedTuple):
-    """Where a run stands in a figure: its labels in the tables of results."""
+    """A run as a point of a curve."""
 
     run: str
     scenario: str
@@ -28,29 +31,27 @@ class Point(NamedTuple):
 
 
 class Ledger(Database):
-    """An open ledger; what it takes and raises is what a `Database` does."""
+    """An open ledger; its parameters and errors are those of `Database`."""
 
-    # -------------------------------------------------------------------------------------- what is asked for
+    # ----------------------------------------------------------------------------------------------- requests
 
-    def plan(
-        self, scenarios: dict[str, str], curves: dict[tuple[str, str], str], runs: Sequence[Run]
-    ) -> None:
-        """Enter runs that are asked for, and the scenarios that ask.
+    def plan(self, scenarios: dict[str, str], curves: dict[Curve, str], runs: Sequence[Run]) -> None:
+        """Add runs, and the scenarios that contain them.
 
         Parameters
         ----------
         scenarios : dict of str to str
-            TOML of each scenario by its id.
+            The TOML of each scenario, by id.
         curves : dict of (scenario, condition) to str
-            What each curve is, as `kswarms.scenarios.runs.run.describe_curve` gives it.
+            The description of each curve (`kswarms.scenarios.runs.run.describe_curve`).
         runs : sequence of Run
-            What is asked for.
+            The runs.
 
         Raises
         ------
         InputError
-            If the ledger has runs of another version, or of a curve that was described otherwise; then
-            nothing is entered.
+            If the ledger has runs of another version, or a different curve of the same name; then nothing
+            is added.
         """
         with self._transaction():
             self._refuse_mixtures(curves)
@@ -73,64 +74,50 @@ class Ledger(Database):
                 ((*label, run.n, run.seed, run.digest) for run in runs for label in run.labels),
             )
 
-    def _refuse_mixtures(self, curves: dict[tuple[str, str], str]) -> None:
+    def _refuse_mixtures(self, curves: dict[Curve, str]) -> None:
         directory = str(self.path.parent)
         for (version,) in self._db.execute("SELECT DISTINCT version FROM runs"):
             if version != __version__:
-                raise InputError(
-                    "out",
-                    directory,
-                    f"has runs of kswarms {version}, this is {__version__}; name another",
-                )
-        known = {
-            (scenario, condition): text
-            for scenario, condition, text in self._db.execute(
-                "SELECT scenario, condition, description FROM curves"
-            )
-        }
-        for (scenario, condition), text in curves.items():
-            if known.get((scenario, condition), text) != text:
+                reason = f"has runs of kswarms {version}, this is {__version__}; use another directory"
+                raise InputError("out", directory, reason)
+        for scenario, condition, text in self._db.execute("SELECT * FROM curves"):
+            if curves.get((scenario, condition), text) != text:
                 curve = f"{scenario} {condition}".strip()
-                raise InputError(
-                    "out",
-                    directory,
-                    f"has runs of a {curve} described otherwise; name another, or give it another id",
-                )
+                reason = f"has runs of a different {curve}; use another directory, or another id"
+                raise InputError("out", directory, reason)
 
     def unfinished(self, runs: Iterable[Run], records: Sequence[str]) -> list[Run]:
-        """Return the runs that are not done yet, or lack one of the recorded tables asked for."""
+        """Return the runs that are not done, or lack one of the recorded tables."""
         done = {run for (run,) in self.query("SELECT run FROM runs WHERE status = 'done'")}
         for name in records:
             done &= {run for (run,) in self.query("SELECT run FROM records WHERE name = ?", name)}
         return [run for run in runs if run.digest not in done]
 
-    # ------------------------------------------------------------------------------------------ what came out
+    # ------------------------------------------------------------------------------------------------ results
 
     def add(
-        self, run: Run, result: Outcome | Failure, seconds: float, records: dict[str, bytes], replay: str
+        self, run: Run, result: Outcome | Failure, seconds: float, records: dict[str, bytes] | None = None
     ) -> None:
-        """Enter what came out of a run that was planned.
+        """Store the result of a planned run.
 
-        A run that is done, and was played again for a record, stays done with its results if that fails.
+        A run that is done, is replayed for a recorded table and fails keeps its status and results.
 
         Parameters
         ----------
         run : Run
-            What was played.
+            The run.
         result : Outcome or Failure
-            What came out.
+            Its result.
         seconds : float
             CPU time (s).
-        records : dict of str to bytes
-            Recorded tables by name, each packed.
-        replay : str
-            The command that plays it again.
+        records : dict of str to bytes, optional
+            Its recorded tables by name, each packed.
         """
-        told: tuple[str | None, str | None] = (None, None)
+        error: tuple[str | None, str | None] = (None, None)
         played = (code_version(), seconds)
         with self._transaction():
             if isinstance(result, Failure):
-                told = (result.error, result.trace)
+                error = (result.error, result.trace)
                 self._db.execute(
                     "UPDATE runs SET status = 'failed', code = ?, seconds = ?"
                     " WHERE run = ? AND status != 'done'",
@@ -142,107 +129,97 @@ class Ledger(Database):
                     " WHERE run = ?",
                     (*played, json.dumps(result.swarms), json.dumps(result.policies), run.digest),
                 )
-            self._db.execute(
-                "UPDATE runs SET error = ?, traceback = ?, replay = ? WHERE run = ?",
-                (*told, replay, run.digest),
-            )
+            self._db.execute("UPDATE runs SET error = ?, traceback = ? WHERE run = ?", (*error, run.digest))
             self._db.executemany(
                 "INSERT OR REPLACE INTO records VALUES (?, ?, ?)",
-                ((run.digest, name, rows) for name, rows in records.items()),
+                ((run.digest, name, rows) for name, rows in (records or {}).items()),
             )
 
     def results(self, name: str) -> Iterator[tuple[Point, list[dict[str, Any]]]]:
-        """Yield the rows of ``swarms`` or ``policies`` of each point that is done, in their order."""
+        """Yield the rows ``swarms`` or ``policies`` of each finished point, ordered by its columns."""
         for *point, rows in self.query(
             f"SELECT run, scenario, condition, n, points.seed, {name} FROM points JOIN runs USING (run)"
             f" WHERE status = 'done' AND {name} != '[]' ORDER BY scenario, condition, n, points.seed"
         ):
-            yield Point(*point), self._parsed(rows)
+            yield Point(*point), self._parse_json(rows)
 
     def records(self, name: str) -> Iterator[tuple[str, bytes]]:
-        """Yield a recorded table, packed, of every run that is done and has it, in the order of digests."""
+        """Yield a recorded table, packed, of each finished run that has it, ordered by digest."""
         yield from self.query(
             "SELECT run, rows FROM records JOIN runs USING (run)"
             " WHERE name = ? AND status = 'done' ORDER BY run",
             name,
         )
 
-    # --------------------------------------------------------------------------------------------- looking in
-
     def run(self, name: str) -> Run:
-        """Return the run of a digest.
+        """Return the run with a digest.
 
         Raises
         ------
         InputError
-            If there is none, or playing it now would be playing something else.
+            If the ledger does not have it, or replaying it now would play a different game.
         """
-        row = next(
-            self.query("SELECT description, seed FROM games JOIN runs ON game = id WHERE run = ?", name),
-            None,
-        )
+        query = "SELECT version, description, seed FROM games JOIN runs ON game = id WHERE run = ?"
+        row = next(self.query(query, name), None)
         if row is None:
-            raise InputError(
-                "run", name, f"must be a run of {self.path.parent}: see the column run of its tables"
-            )
+            reason = f"must be a run of {self.path.parent}: see the column run of its tables"
+            raise InputError("run", name, reason)
+        version, description, seed = row
+        if version != __version__:
+            raise InputError("run", name, f"was played by kswarms {version}, this is {__version__}")
         labels = tuple(self.query("SELECT scenario, condition FROM points WHERE run = ?", name))
-        run = Run(name, Game(**self._parsed(row[0])), row[1], labels)
+        run = Run(name, Game(**self._parse_json(description)), seed, labels)
         if digest(run.game, run.seed) != name:
-            raise InputError(
-                "run", name, "is of another version of kswarms, or what its game loads has changed"
-            )
+            raise InputError("run", name, "loads a file that has changed since it was played")
         return run
 
     def outcome(self, name: str) -> tuple[list[dict[str, Any]], list[dict[str, Any]]] | None:
-        """Return the rows of swarms and of policies of a run, or None if it is not done."""
-        row = next(
-            self.query("SELECT swarms, policies FROM runs WHERE run = ? AND status = 'done'", name), None
-        )
-        return (self._parsed(row[0]), self._parsed(row[1])) if row else None
+        """Return the rows ``swarms`` and ``policies`` of a run, or None if it is not done."""
+        query = self.query("SELECT swarms, policies FROM runs WHERE run = ? AND status = 'done'", name)
+        row = next(query, None)
+        return (self._parse_json(row[0]), self._parse_json(row[1])) if row else None
 
     # ----------------------------------------------------------------------------------------------- sessions
 
     def begin_session(self, about: dict[str, Any]) -> int:
-        """Enter a session, and return its number."""
+        """Add a session; return its number."""
         with self._transaction():
-            number = self._db.execute(
-                "INSERT INTO sessions (about) VALUES (?)", (json.dumps(about),)
-            ).lastrowid
-        assert number is not None
-        return number
+            cursor = self._db.execute("INSERT INTO sessions (about) VALUES (?)", (json.dumps(about),))
+        assert cursor.lastrowid is not None
+        return cursor.lastrowid
 
     def update_session(self, number: int, **changes: Any) -> None:
-        """Add to what is known of a session."""
+        """Change the description of a session."""
         ((about,),) = self.query("SELECT about FROM sessions WHERE id = ?", number)
         with self._transaction():
             self._db.execute(
                 "UPDATE sessions SET about = ? WHERE id = ?",
-                (json.dumps(self._parsed(about) | changes), number),
+                (json.dumps(self._parse_json(about) | changes), number),
             )
 
     def sessions(self) -> list[dict[str, Any]]:
-        """Return what is known of every session, the first first."""
-        return [self._parsed(about) for (about,) in self.query("SELECT about FROM sessions ORDER BY id")]
+        """Return the descriptions of all sessions, in order."""
+        return [self._parse_json(about) for (about,) in self.query("SELECT about FROM sessions ORDER BY id")]
 
     def scenarios(self) -> dict[str, str]:
-        """Return the TOML of each scenario, as it was asked for last, by its id."""
+        """Return the latest TOML of each scenario, by id."""
         return dict(self.query("SELECT id, toml FROM scenarios ORDER BY id"))
 
 
 def find_run(directory: Path, name: str) -> Run:
-    """Return the run of a digest from the ledger of a directory of results.
+    """Return the run with a digest from the ledger of a directory.
 
     Parameters
     ----------
     directory : Path
-        What ``kswarms run --out`` wrote.
+        Directory of ``kswarms run --out``.
     name : str
-        The digest, as the column ``run`` of the tables has it.
+        The digest: the column ``run`` of its tables.
 
     Raises
     ------
     InputError
-        If there is no ledger, no such run in it, or playing it now would be playing something else.
+        If there is no ledger, or as for `Ledger.run`.
     """
-    with Ledger(directory / FILE) as ledger:
+    with Ledger(directory / LEDGER_FILE) as ledger:
         return ledger.run(name)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from kswarms.scenarios.cli import invoke
-from kswarms.scenarios.study.database import FILE
+from kswarms.scenarios.study.database import LEDGER_FILE
 
 QUICK = ["--densities", "6", "--seeds", "1", "--jobs", "1", "--quiet"]
 SCENARIO = """
@@ -129,7 +129,7 @@ def test_a_damaged_ledger_is_told_in_a_line_and_the_tables_stay_as_they_were(
     command = ["run", "fig-6.1a", *QUICK, "--no-figures", "--record", "robots"]
     assert invoke(command) == 0
     before = Path("results", "runs.parquet").read_bytes()
-    with sqlite3.connect(Path("results", FILE)) as ledger:
+    with sqlite3.connect(Path("results", LEDGER_FILE)) as ledger:
         ledger.execute(statement)
     ledger.close()
     assert invoke(command) == 1

@@ -11,9 +11,9 @@ from kswarms.model.foraging import ForagingModel
 from kswarms.model.game_model import GameModel
 from kswarms.model.recorder import save_policies
 from kswarms.scenarios.cli import invoke
-from kswarms.scenarios.study.database import FILE
+from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.ledger import Ledger
-from kswarms.scenarios.study.summary import failures
+from kswarms.scenarios.study.summary import failed_runs
 
 POLICY = """
 import os
@@ -74,8 +74,8 @@ def errors_of(code: str, policy: str = "faulty.py:Faulty") -> list[str]:
     Path("faulty.py").write_text(code)
     Path("mine.toml").write_text(SCENARIO.replace("POLICY", policy))
     assert invoke(RUN) == 1
-    with Ledger(Path("results", FILE)) as ledger:
-        return [failed.error for failed in failures(ledger)]
+    with Ledger(Path("results", LEDGER_FILE)) as ledger:
+        return [failed.error for failed in failed_runs(ledger)]
 
 
 @pytest.mark.parametrize(

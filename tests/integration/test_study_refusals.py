@@ -15,10 +15,11 @@ from kswarms import __version__
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.description.condition import Condition, SwarmRule
-from kswarms.scenarios.study import study as study_module
-from kswarms.scenarios.study.database import FILE
+from kswarms.scenarios.study import lock
+from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.ledger import find_run
-from kswarms.scenarios.study.study import LOCK, Study, holder
+from kswarms.scenarios.study.lock import LOCK_FILE, lock_holder
+from kswarms.scenarios.study.study import Study
 from tests.helpers.tiny_study import RUN, TINY, contents, sessions
 
 pytestmark = pytest.mark.usefixtures("with_a_file_of_scenarios")
@@ -29,40 +30,30 @@ pytestmark = pytest.mark.usefixtures("with_a_file_of_scenarios")
 def test_two_sweeps_on_one_directory_do_not_meet(capsys: pytest.CaptureFixture[str]) -> None:
     with Study(Path("results"), "kswarms run tiny.toml") as study:
         study.plan([TINY])
-        user = holder(Path("results"))
+        user = lock_holder(Path("results"))
         assert user.startswith(f"process {os.getpid()} on ")
         assert invoke(RUN) == 2
         refusal = capsys.readouterr().err
-        assert refusal == f"kswarms: out='results': is in use by {user}; wait for it, or name another\n"
+        assert refusal == f"kswarms: out='results': is in use by {user}; wait, or use another directory\n"
         assert "(kswarms run tiny.toml)" in refusal
         assert invoke(["status", "results"]) == 0
         assert f"in use by: {user}" in capsys.readouterr().out
-    assert holder(Path("results")) == ""
+    assert lock_holder(Path("results")) == ""
     assert invoke(RUN) == 0
 
 
-def test_who_only_asks_for_the_user_is_waited_for_and_a_user_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_holder_query_does_not_refuse_a_study(monkeypatch: pytest.MonkeyPatch) -> None:
     with Study(Path("results")):
         pass
-    # What a process that was killed leaves.
-    Path("results", LOCK).write_text("process 1")
-    with Path("results", LOCK).open() as asking:
-        fcntl.flock(asking, fcntl.LOCK_SH)  # as `holder` does
-        waits = []
-
-        def wait(seconds: float) -> None:
-            waits.append(seconds)
-            if len(waits) == 3:
-                fcntl.flock(asking, fcntl.LOCK_UN)
-
-        monkeypatch.setattr(time, "sleep", wait)
+    Path("results", LOCK_FILE).write_text("process 1")  # left by a process that was killed
+    with Path("results", LOCK_FILE).open() as query:
+        fcntl.flock(query, fcntl.LOCK_SH)  # as `lock_holder` does
+        monkeypatch.setattr(time, "sleep", lambda _: fcntl.flock(query, fcntl.LOCK_UN))
         with Study(Path("results")):
-            assert len(waits) == 3
+            monkeypatch.setattr(lock, "_TIMEOUT", 0.0)
             with pytest.raises(InputError, match=f"is in use by process {os.getpid()} on"):
                 Study(Path("results")).__enter__()
-        assert len(waits) == 3
-        monkeypatch.setattr(study_module, "_PATIENCE", 0.0)
-        fcntl.flock(asking, fcntl.LOCK_SH)
+        fcntl.flock(query, fcntl.LOCK_SH)
         with pytest.raises(InputError, match="is in use by another process"):
             Study(Path("results")).__enter__()
 
@@ -75,7 +66,7 @@ def test_tables_without_their_ledger_are_not_replaced(
     Path("results", foreign).write_text("my jogging diary")
     assert invoke(RUN) == 2
     assert capsys.readouterr().err == (
-        f"kswarms: out='results': has a {foreign} but no ledger.sqlite; name another\n"
+        f"kswarms: out='results': has a {foreign} but no ledger.sqlite; use another directory\n"
     )
     assert Path("results", foreign).read_text() == "my jogging diary"
     assert [path.name for path in Path("results").iterdir()] == [foreign]
@@ -83,20 +74,20 @@ def test_tables_without_their_ledger_are_not_replaced(
 
 def test_a_ledger_of_something_else_is_refused_and_left_alone(capsys: pytest.CaptureFixture[str]) -> None:
     Path("text").mkdir()
-    Path("text", FILE).write_text("my jogging diary")
+    Path("text", LEDGER_FILE).write_text("my jogging diary")
     Path("other").mkdir()
-    with sqlite3.connect(Path("other", FILE)) as db:
+    with sqlite3.connect(Path("other", LEDGER_FILE)) as db:
         db.execute("CREATE TABLE jogging (km REAL)")
     db.close()
     shutil.copytree("other", "later")
-    with sqlite3.connect(Path("later", FILE)) as db:
+    with sqlite3.connect(Path("later", LEDGER_FILE)) as db:
         db.executescript("PRAGMA application_id = 1803772781; PRAGMA user_version = 2")
     db.close()
-    for name, reason in (("text", "file is not"), ("other", "it is not"), ("later", "form 2 where 1 is")):
-        before = Path(name, FILE).read_bytes()
+    for name, reason in (("text", "file is not"), ("other", "it is not"), ("later", "format 2, not 1")):
+        before = Path(name, LEDGER_FILE).read_bytes()
         assert invoke([*RUN, "--out", name]) == 2
-        assert f"='{name}/{FILE}': must be a ledger of kswarms ({reason}" in capsys.readouterr().err
-        assert Path(name, FILE).read_bytes() == before
+        assert f"='{name}/{LEDGER_FILE}': must be a ledger of kswarms ({reason}" in capsys.readouterr().err
+        assert Path(name, LEDGER_FILE).read_bytes() == before
 
 
 # ------------------------------------------------------------------------------------------ what does not mix
@@ -109,7 +100,7 @@ def test_a_curve_described_otherwise_is_refused(capsys: pytest.CaptureFixture[st
     # Other densities, so that no point of the curve is there already.
     Path("tiny.toml").write_text(TINY.replace(conditions=longer, densities=(8,)).to_toml())
     assert invoke(RUN) == 2
-    refusal = "out='results': has runs of a tiny described otherwise; name another, or give it another id"
+    refusal = "out='results': has runs of a different tiny; use another directory, or another id"
     assert capsys.readouterr().err == f"kswarms: {refusal}\n"
     assert contents("results") == before
     assert len(sessions("results")) == 1
@@ -128,9 +119,9 @@ def test_learned_policies_that_changed_make_another_curve(tmp_path: Path) -> Non
     with Study(Path("results")) as study:
         (run, *_) = study.plan([loading])
     file.write_text(json.dumps(content | {"robots": [[arm | {"action": "flight"}]]}))
-    with Study(Path("results")) as study, pytest.raises(InputError, match="described otherwise"):
+    with Study(Path("results")) as study, pytest.raises(InputError, match="has runs of a different tiny"):
         study.plan([loading.replace(densities=(8,))])
-    with pytest.raises(InputError, match="what its game loads has changed"):
+    with pytest.raises(InputError, match="loads a file that has changed"):
         find_run(Path("results"), run.digest)
 
 
@@ -144,7 +135,7 @@ def test_runs_of_another_version_are_refused(
     version = __version__
     assert invoke(RUN) == 2
     assert capsys.readouterr().err == (
-        f"kswarms: out='results': has runs of kswarms {version}, this is 9.0.0; name another\n"
+        f"kswarms: out='results': has runs of kswarms {version}, this is 9.0.0; use another directory\n"
     )
     assert contents("results") == before
 

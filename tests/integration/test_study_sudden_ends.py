@@ -17,7 +17,7 @@ import pytest
 
 from kswarms.model.game_model import GameModel
 from kswarms.scenarios.cli import invoke
-from kswarms.scenarios.study.database import FILE
+from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.study import Study
 from tests.helpers.interrupts import heed_interrupts
 from tests.helpers.tiny_study import RUN, TINY, Fault, contents, sessions, undisturbed
@@ -175,7 +175,7 @@ def test_half_a_commit_is_forgotten() -> None:
                 if k == 30:
                     os._exit(0)
     os.waitpid(child, 0)
-    journal = Path("results", f"{FILE}-wal")
+    journal = Path("results", f"{LEDGER_FILE}-wal")
     journal.write_bytes(journal.read_bytes()[:-1000])
     assert invoke(RUN) == 0
     assert 0 < sessions("results")[-1]["runs"]["done before"] < 31

@@ -1,16 +1,15 @@
 """Games played for tests of outcomes, as the results that a directory of `kswarms run` would hold."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import cache
 
-import pandas as pd
 import pytest
 
 from kswarms.analysis.results.runs import Results
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.runs.run import expand
 from kswarms.scenarios.runs.sweep import play_all
-from kswarms.scenarios.study.parquet import tabulate
+from tests.helpers.played_runs import result_table
 
 Play = Callable[[tuple[str, ...], tuple[int, ...], int, int], Results]
 
@@ -23,12 +22,8 @@ def played() -> Play:
 
 def play(ids: tuple[str, ...], densities: tuple[int, ...], seeds: int, first_seed: int) -> Results:
     asked = [CATALOGUE[name].replace(densities=densities, seeds=seeds) for name in ids]
-    tables = [tabulate(run, outcome) for run, outcome in play_all(expand(asked, first_seed), jobs=2)]
-    runs = joined(table["runs"].to_pandas() for table in tables)
+    games = list(play_all(expand(asked, first_seed), jobs=2))
+    runs = result_table(games)
     assert len(runs.drop_duplicates(["scenario", "n", "seed"])) == len(ids) * len(densities) * seeds
-    learned = [table["policies"].to_pandas() for table in tables if "policies" in table]
-    return Results(runs, joined(learned) if learned else None)
-
-
-def joined(frames: Iterable[pd.DataFrame]) -> pd.DataFrame:
-    return pd.concat(frames, ignore_index=True)
+    learned = result_table(games, "policies")
+    return Results(runs, None if learned.empty else learned)

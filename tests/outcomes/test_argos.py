@@ -12,7 +12,7 @@ from kswarms.scenarios.catalogue.argos import DENSITIES
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.runs.run import expand
 from kswarms.scenarios.runs.sweep import play_all
-from kswarms.scenarios.study.parquet import tabulate
+from tests.helpers.played_runs import result_table
 
 pytestmark = pytest.mark.slow
 
@@ -24,8 +24,7 @@ UNEQUAL: Final = "argos-avoid-attack"
 def compared(scenarios: Iterable[Scenario], densities: tuple[int, ...], seeds: int) -> pd.DataFrame:
     """Play scenarios and lay them beside ARGoS."""
     planned = [scenario.replace(densities=densities, seeds=seeds) for scenario in scenarios]
-    rows = [tabulate(run, outcome)["runs"].to_pandas() for run, outcome in play_all(expand(planned))]
-    return against_argos(pd.concat(rows))
+    return against_argos(result_table(play_all(expand(planned))))
 
 
 @pytest.fixture(

@@ -11,11 +11,11 @@ import pytest
 from benchmarks import bench, games
 from benchmarks import report as report_benchmark
 from benchmarks.games import Plan, WorkError, count_work, time_game
+from kswarms.agents.common.columns import names
 from kswarms.analysis.results.runs import read_policies
 from kswarms.model.game_model import GameModel
 from kswarms.model.kernel.percepts import CONFLICT, WALL
 from kswarms.scenarios.catalogue import CATALOGUE
-from kswarms.scenarios.study.parquet import SCHEMAS
 
 TINY = Plan("avoid,attack", 6, 30.0)
 
@@ -107,8 +107,7 @@ def test_a_random_study_has_the_columns_of_a_real_one(tmp_path: Path) -> None:
     rows = report_benchmark.write_study(tmp_path, scenarios, densities=1, seeds=2)
     assert rows == 2 * (2 + 5 * 3 + 5)
     for name in ("runs", "policies"):
-        schema = SCHEMAS[name]
-        assert pq.read_schema(tmp_path / f"{name}.parquet").names == schema.names
+        assert tuple(pq.read_schema(tmp_path / f"{name}.parquet").names) == names(name)
     learned = read_policies(tmp_path)
     assert set(zip(learned["scenario"], learned["swarm"], learned["opponent"], strict=True)) == {
         *(("fig-6.8", 2, opponent) for opponent in (1, 2)),

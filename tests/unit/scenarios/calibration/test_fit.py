@@ -15,7 +15,6 @@ from kswarms.model.description.parameters import parse_parameters
 from kswarms.scenarios.calibration import games as calibration_games
 from kswarms.scenarios.calibration.fit import Setup, calibrate, error_of, validate
 from kswarms.scenarios.calibration.games import START, learning_game, texts, to_place, to_point
-from kswarms.scenarios.description.toml_files import write_json
 from kswarms.scenarios.runs.run import Run
 
 TARGET = {("avoid", 6): 10.0, ("avoid", 30): 60.0, ("attack", 6): 2.0, ("attack", 30): 30.0}
@@ -186,17 +185,6 @@ def test_only_rows_of_the_table_and_a_directory_will_do(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(InputError, match="must be a writable directory"):
         calibrate(TINY, TARGET, Table(), tmp_path / "file")
-
-
-def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = tmp_path / "shares.json"
-    write_json(path, {"a": 1})
-    with pytest.raises(TypeError):
-        write_json(path, {"a": object()})
-    monkeypatch.setattr(Path, "replace", _fail)
-    with pytest.raises(OSError, match="disk"):
-        write_json(path, {"a": 2})
-    assert json.loads(path.read_text()) == {"a": 1}
 
 
 def _fail(*_: object) -> None:

@@ -135,14 +135,8 @@ LEARNED = {
         for name in ("fig-7.4", "fig-7.6", "fig-7.8")
         for delta in DELTAS
     },
-    **{
-        ("fig-7.10", f"delta={delta}"): Learned([1, 3], stronger(delta))
-        for delta in DELTAS
-    },
-    **{
-        ("fig-7.11", f"delta={delta}"): Learned([1, 3], stronger({1: delta, 3: 0.125}))
-        for delta in DELTAS
-    },
+    **{("fig-7.10", f"delta={delta}"): Learned([1, 3], stronger(delta)) for delta in DELTAS},
+    **{("fig-7.11", f"delta={delta}"): Learned([1, 3], stronger({1: delta, 3: 0.125})) for delta in DELTAS},
     ("fig-7.13b", ""): Learned(reward=stronger()),
     ("fig-7.16b", ""): Learned(reward=stronger()),
     ("fig-7.18b", ""): Learned(reward=stronger()),

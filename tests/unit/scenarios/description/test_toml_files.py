@@ -8,7 +8,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selecting import chosen
 from kswarms.scenarios.description.scenario import toml_of
-from kswarms.scenarios.description.toml_files import read_scenarios, write_json
+from kswarms.scenarios.description.toml_files import read_scenarios
 
 HUNT = """
 id = "hunt"
@@ -103,12 +103,3 @@ def test_two_scenarios_of_one_id_must_be_the_same(tmp_path: Path) -> None:
     file.write_text(CATALOGUE["fig-6.1c"].replace(seeds=3).to_toml())
     with pytest.raises(InputError, match=r"id='fig-6.1c': must name one scenario, not two that differ"):
         chosen(["fig-6.1c", str(file)])
-
-
-def test_json_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
-    path = tmp_path / "content.json"
-    write_json(path, {"a": 1})
-    before = path.read_bytes()
-    with pytest.raises(TypeError):
-        write_json(path, {"a": object()})
-    assert path.read_bytes() == before

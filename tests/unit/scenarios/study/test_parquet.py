@@ -8,14 +8,14 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from kswarms.agents.common.columns import RECORDED_TABLES
+from kswarms.agents.common.columns import TABLES
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.runs.outcome import Failure, Outcome
 from kswarms.scenarios.runs.run import Run, expand
 from kswarms.scenarios.study import parquet as tables
-from kswarms.scenarios.study.database import FILE
+from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.ledger import Ledger
-from kswarms.scenarios.study.parquet import export, pack, tabulate
+from kswarms.scenarios.study.parquet import arrow_schema, export, pack
 
 ARM = {"opponent": 1, "action": "flight", "reward": 2.5, "time": 10.0, "count": 4.0, "q": 0.25}
 
@@ -67,11 +67,11 @@ def write(
     directory: Path, runs: Iterable[Run], outcome: Callable[[Run], Outcome | Failure] | None = None
 ) -> list[Path]:
     """Enter what came out of runs into the directory's ledger, and export it."""
-    with Ledger(directory / FILE, new=True) as ledger:
+    with Ledger(directory / LEDGER_FILE, new=True) as ledger:
         ledger.plan({}, {}, list(runs))
         for run in runs:
             result = (outcome or outcome_of)(run)
-            ledger.add(run, result, 0.1, pack(result) if isinstance(result, Outcome) else {}, "")
+            ledger.add(run, result, 0.1, pack(result.records) if isinstance(result, Outcome) else {})
         return export(ledger, directory)
 
 
@@ -165,14 +165,6 @@ def test_without_a_learner_there_are_no_policies(tmp_path: Path) -> None:
     assert write(tmp_path, runs_of("fig-6.1c")) == [tmp_path / "runs.parquet"]
 
 
-def test_a_result_that_lacks_a_column_of_its_policies_is_an_error() -> None:
-    (run,) = runs_of("fig-6.4b", seeds=1, densities=(6,))
-    outcome = outcome_of(run)
-    del outcome.policies[0]["share"]
-    with pytest.raises(KeyError):
-        tabulate(run, outcome)
-
-
 def test_the_bytes_do_not_depend_on_the_order_in_which_runs_end(tmp_path: Path) -> None:
     runs = runs_of("fig-6.1c", "fig-7.10", "fig-6.15")
     written = set()
@@ -203,8 +195,8 @@ def test_large_tables_are_written_a_group_at_a_time(tmp_path: Path, monkeypatch:
     runs = runs_of("fig-6.1c")
     (whole,) = write(tmp_path, runs)
     before = rows(tmp_path)
-    monkeypatch.setattr(tables, "_POINTS_AT_ONCE", 2)
-    monkeypatch.setattr(tables, "_ROWS_AT_ONCE", 5)
+    monkeypatch.setattr(tables, "_POINTS_PER_PART", 2)
+    monkeypatch.setattr(tables, "_ROWS_PER_GROUP", 5)
     write(tmp_path, runs)
     assert pq.ParquetFile(whole).num_row_groups == 2
     assert rows(tmp_path) == before
@@ -219,12 +211,14 @@ def test_runs_that_failed_or_are_missing_have_no_rows(tmp_path: Path) -> None:
     assert write(tmp_path / "none", runs, lambda _: Failure("it broke")) == []
 
 
-def test_a_result_that_lacks_a_column_is_an_error() -> None:
-    (run,) = runs_of("fig-6.1c", seeds=1, densities=(6,))
-    outcome = outcome_of(run)
-    del outcome.swarms[0]["ended"]
-    with pytest.raises(KeyError):
-        tabulate(run, outcome)
+def test_a_result_that_lacks_a_column_is_reported_as_damage(tmp_path: Path) -> None:
+    (run,) = runs_of("fig-6.4b", seeds=1, densities=(6,))
+    for table, column in (("swarms", "ended"), ("policies", "share")):
+        outcome = outcome_of(run)
+        del getattr(outcome, table)[0][column]
+        (tmp_path / table).mkdir()
+        with pytest.raises(OSError, match=rf"ledger.sqlite: is damaged \(KeyError\('{column}'"):
+            write(tmp_path / table, [run], lambda _, outcome=outcome: outcome)
 
 
 def with_robots(run: Run, **columns: list[object]) -> Outcome:
@@ -233,11 +227,6 @@ def with_robots(run: Run, **columns: list[object]) -> Outcome:
     whole |= {"t_a": [1.0, 2.0], "t_p": [5.0, 6.0], "arms": [[], [ARM, ARM | {"action": "fight"}]]}
     outcome.records["robots"] = whole | columns
     return outcome
-
-
-def test_every_table_has_a_name_that_can_be_asked_for() -> None:
-    assert tuple(tables.SCHEMAS) == ("runs", "policies", *RECORDED_TABLES)
-    assert all(schema.names[0] == "run" for schema in tables.SCHEMAS.values())
 
 
 def test_records_are_written_once_for_a_shared_run_and_sorted_by_run(tmp_path: Path) -> None:
@@ -275,15 +264,8 @@ def test_a_run_played_again_keeps_what_was_recorded_of_it(tmp_path: Path) -> Non
 def test_a_game_without_a_conflict_gives_a_table_without_rows(tmp_path: Path) -> None:
     (run,) = runs_of("fig-6.1c", seeds=1, densities=(6,))
     outcome = outcome_of(run)
-    outcome.records["conflicts"] = {name: [] for name in tables.SCHEMAS["conflicts"].names if name != "run"}
+    outcome.records["conflicts"] = {
+        name: [] for name in arrow_schema(TABLES["conflicts"]).names if name != "run"
+    }
     write(tmp_path, [run], lambda _: outcome)
-    assert pq.read_table(tmp_path / "conflicts.parquet").schema.equals(tables.SCHEMAS["conflicts"])
-
-
-def test_a_run_alone_is_tabulated_as_the_ledger_exports_it(tmp_path: Path) -> None:
-    (run,) = runs_of("fig-6.4b", seeds=1, densities=(6,))
-    paths = write(tmp_path, [run], with_robots)
-    alone = tabulate(run, with_robots(run))
-    assert [f"{name}.parquet" for name in alone] == [path.name for path in paths]
-    for name, table in alone.items():
-        assert pq.read_table(tmp_path / f"{name}.parquet").equals(table)
+    assert pq.read_table(tmp_path / "conflicts.parquet").schema.equals(arrow_schema(TABLES["conflicts"]))
