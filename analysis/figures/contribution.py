@@ -1,4 +1,4 @@
-"""What robots contributed, drawn over the reward that they computed."""
+"""Scatter charts of the true contribution of robots over the reward that they computed."""
 
 from pathlib import Path
 
@@ -20,7 +20,7 @@ from kswarms.analysis.statistics.intervals import fewest_seeds
 from kswarms.analysis.tables.contribution import estimate_text
 
 
-def scatter(rows: pd.DataFrame, title: str = "") -> Figure:
+def contribution_figure(rows: pd.DataFrame, title: str = "") -> Figure:
     """Draw the true contribution of each robot over the reward that it computed.
 
     Parameters
@@ -28,26 +28,25 @@ def scatter(rows: pd.DataFrame, title: str = "") -> Figure:
     rows : pandas.DataFrame
         As `of_question` returns them.
     title : str
-        What the scenario is, printed after its id.
+        Title of the scenario.
 
     Returns
     -------
     matplotlib.figure.Figure
-        A panel for each of `MEASURES`: each robot's means with their intervals, single games as light points.
+        A panel for each of `MEASURES`: means of each robot with intervals; light points are single games.
     """
     first, seeds, measures = rows.iloc[0], rows["seed"].nunique(), measures_of(rows)
     absent = "from learning and game" if first["absent_from"] == "learning" else "from the measured game"
-    name = heading(first["scenario"], title)
-    above = [name, first["condition"], f"N = {first['n']}", f"robots absent {absent}"]
+    condition = f"{first['condition']}, " if first["condition"] else ""
+    name = f"{heading(first['scenario'], title)}, {condition}N = {first['n']}, robots absent {absent}"
     robots, correlations = mean_contributions(rows), rank_correlations(rows)
-    with sheet(", ".join(filter(None, above)), 5.5 * len(measures) + 1, 5.5) as figure:
+    with sheet(name, 5.5 * len(measures) + 1, 5.5) as figure:
         panels = figure.subplots(1, len(measures), squeeze=False)[0]
         for axes, measure in zip(panels, measures, strict=True):
             axes.axhline(0, color="0.4", linewidth=1)
             for swarm in sorted(set(rows["swarm"])):
-                style = swarm_style(swarm)
-                of_swarm = robots[(robots["swarm"] == swarm) & (robots["robot"] >= 0)]
-                _draw_swarm(axes, rows[rows["swarm"] == swarm], of_swarm, measure, style)
+                means = robots[(robots["swarm"] == swarm) & (robots["robot"] >= 0)]
+                _draw_swarm(axes, rows[rows["swarm"] == swarm], means, measure, swarm_style(swarm))
             axes.set_title(_title(correlations[correlations["measure"] == measure]), fontsize="small")
             axes.set_xlabel("reward that the robot computes in a game (s)")
             axes.set_ylabel(f"change of its swarm's SUD by the robot ({MEASURES[measure]})")
@@ -57,27 +56,21 @@ def scatter(rows: pd.DataFrame, title: str = "") -> Figure:
     return figure
 
 
-def _draw_swarm(
-    axes: Axes, games: pd.DataFrame, robots: pd.DataFrame, measure: str, style: LineStyle
-) -> None:
+def _draw_swarm(axes: Axes, games: pd.DataFrame, means: pd.DataFrame, measure: str, style: LineStyle) -> None:
     if games["seed"].nunique() > 1:
         axes.scatter(games["reward"], games[measure], s=7, color=style.colour, alpha=0.25, linewidths=0)
     axes.errorbar(
-        robots["reward"],
-        robots[measure],
-        xerr=_reach(robots, "reward"),
-        yerr=_reach(robots, measure),
-        label=f"S{robots['swarm'].iloc[0]}: {', '.join(dict.fromkeys(map(brief, games['policy'])))}",
+        means["reward"],
+        means[measure],
+        xerr=means["reward_high"] - means["reward"],
+        yerr=means[f"{measure}_high"] - means[measure],
+        label=f"S{means['swarm'].iloc[0]}: {', '.join(dict.fromkeys(map(brief, games['policy'])))}",
         color=style.colour,
         linestyle="none",
         marker=style.marker,
         markerfacecolor=style.colour if style.filled else "white",
         elinewidth=0.8,
     )
-
-
-def _reach(table: pd.DataFrame, quantity: str) -> pd.Series:
-    return table[f"{quantity}_high"] - table[quantity]
 
 
 def _title(correlations: pd.DataFrame) -> str:
@@ -88,24 +81,24 @@ def _title(correlations: pd.DataFrame) -> str:
     return "\n".join(lines)
 
 
-def draw(directory: Path, title: str = "", **question: object) -> Path:
+def write_contribution_figure(directory: Path, title: str = "", **question: object) -> Path:
     """Write `figures/contribution-<id>.png` in a results directory.
 
     Parameters
     ----------
     directory : Path
-        A directory that holds `contribution.parquet`.
+        Directory with `contribution.parquet`.
     title : str
-        As for `scatter`.
+        Title of the scenario.
     **question
         As for `of_question`.
 
     Raises
     ------
     InputError
-        If the table cannot be read, or the figure cannot be written; then it is as it was.
+        The table cannot be read, or the figure cannot be written; then an existing file is unchanged.
     """
     rows = of_question(read(directory), **question)
     path = directory / "figures" / f"contribution-{rows['scenario'].iloc[0]}.png"
-    save(scatter(rows, title), path)
+    save(contribution_figure(rows, title), path)
     return path

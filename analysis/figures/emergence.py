@@ -106,35 +106,34 @@ def _middles(start: pd.Series) -> np.ndarray:
 
 
 def choices_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
-    """Draw the share of each action over the time of learning: thick of a swarm, thin of each of its robots.
+    """Draw the share of each action over the time of learning; thick lines are swarms, thin lines robots.
 
     Parameters
     ----------
     conflicts : pandas.DataFrame
         Conflicts of one game.
     title : str
-        What it is of.
+        Heading.
 
     Raises
     ------
     InputError
-        Nobody learned.
+        There is no learner.
     """
     swarms, robots = choices(conflicts), choices(conflicts, by=["robot"])
-
     actions = sorted(set(swarms["action"]))
-    if len(actions) == 2:  # the other's share is the rest
+    if len(actions) == 2:  # the two shares add up to 1
         swarms = swarms[swarms["action"] == actions[0]]
 
     def draw(axes: Axes, bandit: tuple[int, int]) -> None:
-        _draw_over_time(axes, _of(robots, bandit), _of(swarms, bandit), "share")
+        _draw_over_time(axes, _of_bandit(robots, bandit), _of_bandit(swarms, bandit), "share")
         axes.set_ylim(-0.02, 1.02)
 
     return _panels(swarms, draw, title, "share of the choices")
 
 
 def values_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
-    """Draw Q of each action over the time of learning: thick the mean of a swarm, thin each of its robots.
+    """Draw Q of each action over the time of learning; thick lines are means of swarms, thin lines robots.
 
     Parameters
     ----------
@@ -144,18 +143,18 @@ def values_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
     Raises
     ------
     InputError
-        Nobody learned.
+        There is no learner.
     """
     robots = values(conflicts)
     means = robots.groupby([*_BANDIT, "action", "time"])["q"].mean().reset_index()
 
     def draw(axes: Axes, bandit: tuple[int, int]) -> None:
-        _draw_over_time(axes, _of(robots, bandit), _of(means, bandit), "q")
+        _draw_over_time(axes, _of_bandit(robots, bandit), _of_bandit(means, bandit), "q")
 
-    return _panels(means, draw, title, "Q (reward a second)")
+    return _panels(means, draw, title, "Q (reward per second)")
 
 
-def _of(rows: pd.DataFrame, bandit: tuple[int, int]) -> pd.DataFrame:
+def _of_bandit(rows: pd.DataFrame, bandit: tuple[int, int]) -> pd.DataFrame:
     return rows[(rows["swarm"] == bandit[0]) & (rows["opponent_swarm"] == bandit[1])]
 
 
@@ -173,9 +172,9 @@ def _panels(
     title: str,
     ylabel: str,
     xlabel: str = "time of learning (s)",
-    legend: str = "thick: the swarm, thin: its robots",
+    legend: str = "thick: swarm, thin: its robots",
 ) -> Figure:
-    """Draw a panel for each bandit: a swarm that learned about a swarm."""
+    """Draw a panel for each pair of a learning swarm and an opponent."""
     bandits = sorted({(int(swarm), int(opponent)) for swarm, opponent in rows[_BANDIT].to_numpy()})
     with sheet(title, width=max(7.0, 5.0 * len(bandits)), height=4.4) as figure:
         panels = figure.subplots(1, len(bandits), sharey=True, squeeze=False)[0]
@@ -226,31 +225,32 @@ def preferences(robots: pd.DataFrame) -> pd.DataFrame:
 
 
 def preferences_figure(robots: pd.DataFrame, title: str = "") -> Figure:
-    """Draw how unlike the robots of a swarm became: Q of every arm at the end, robot by robot.
+    """Draw Q of every arm at the end of a game, robot by robot.
 
     Parameters
     ----------
     robots : pandas.DataFrame
         Rows of `robots.parquet`, of one game or several.
     title : str
-        What it is of.
+        Heading.
 
     Returns
     -------
     matplotlib.figure.Figure
-        A panel for each bandit; robots lie in the order of what their best action is, then of its Q.
+        A panel for each pair of a learning swarm and an opponent; robots are sorted by their best action,
+        then by its Q.
 
     Raises
     ------
     InputError
-        Nobody learned.
+        There is no learner.
     """
     rows = preferences(robots)
     robot = [name for name in ("run", "robot") if name in rows]
     actions = sorted(set(rows["action"]))
 
     def draw(axes: Axes, bandit: tuple[int, int]) -> None:
-        of_bandit = _of(rows, bandit)
+        of_bandit = _of_bandit(rows, bandit)
         best = of_bandit[of_bandit["learned"]].drop_duplicates(robot).sort_values(["action", "q"])
         place = pd.Series(range(len(best)), index=pd.MultiIndex.from_frame(best[robot]))
         for index, action in enumerate(actions):
@@ -272,7 +272,7 @@ def preferences_figure(robots: pd.DataFrame, title: str = "") -> Figure:
         rows,
         draw,
         title,
-        "Q at the end (reward a second)",
-        xlabel="robots, by their best action and its Q",
-        legend="each robot's arms, one above the other",
+        "Q at the end (reward per second)",
+        xlabel="robots, sorted by best action and its Q",
+        legend="all arms of a robot are on one vertical line",
     )

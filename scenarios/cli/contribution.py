@@ -73,7 +73,7 @@ def contribution(
     check_seed("first_seed", first_seed)
     workers = count_workers(jobs)
 
-    from kswarms.analysis.figures.contribution import draw
+    from kswarms.analysis.figures.contribution import write_contribution_figure
     from kswarms.analysis.measures.contribution import of_question, read, time_sud
     from kswarms.analysis.tables.contribution import contribution_tables
     from kswarms.scenarios.contribution.games import contributions, robots_of
@@ -92,7 +92,8 @@ def contribution(
     )
     typer.echo(f"table:  {write_table(out, found)}")
     question: dict[str, Any] = {"condition": name, "n": n, "absent_from": absent_from}
-    typer.echo(f"figure: {draw(out, scenario.title, scenario=scenario.id, **question)}")
+    figure = write_contribution_figure(out, scenario.title, scenario=scenario.id, **question)
+    typer.echo(f"figure: {figure}")
     rows = of_question(read(out), scenario=scenario.id, **question)
     for heading, (header, *lines) in contribution_tables(rows):
         print_table(heading, header, lines)

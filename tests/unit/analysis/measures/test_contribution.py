@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.figures.contribution import draw, scatter
+from kswarms.analysis.figures.contribution import contribution_figure, write_contribution_figure
 from kswarms.analysis.measures.contribution import (
     FILE,
     assumption,
@@ -163,7 +163,7 @@ def test_what_was_not_measured_is_left_out() -> None:
     rows = of_question(table(time_sud=np.nan, sud=noise(9.0).round().astype(int)))
     assert measures_of(rows) == ["pucks"]
     assert rank_correlations(rows)["measure"].tolist() == ["pucks"]
-    assert len(scatter(rows).axes) == 1
+    assert len(contribution_figure(rows).axes) == 1
 
 
 # The assumption.
@@ -244,7 +244,7 @@ def rows_of_two_swarms() -> pd.DataFrame:
 
 def test_the_scatter_shows_each_robot_where_its_means_are() -> None:
     rows = rows_of_two_swarms()
-    figure = scatter(rows, "who meets whom")
+    figure = contribution_figure(rows, "who meets whom")
     pucks, time = figure.axes
     assert (pucks.get_ylabel()[-7:], time.get_ylabel()[-3:]) == ("(pucks)", "(s)")
     assert "fig-6.4b: who meets whom, N = 16" in figure.get_suptitle()
@@ -275,7 +275,7 @@ def test_what_is_printed_names_robots_swarms_and_intervals() -> None:
 def test_a_figure_is_written_from_the_table(tmp_path: Path) -> None:
     pd.concat([table(reward=noise()), table(n=26)]).to_parquet(tmp_path / FILE)
     assert len(read(tmp_path)) == 2 * SEEDS * ROBOTS
-    path = draw(tmp_path, n=16)
+    path = write_contribution_figure(tmp_path, n=16)
     assert path == tmp_path / "figures" / "contribution-fig-6.4b.png"
     assert path.read_bytes().startswith(b"\x89PNG")
     assert list(path.parent.iterdir()) == [path]
@@ -290,4 +290,4 @@ def test_bad_input_is_told(tmp_path: Path) -> None:
     table().to_parquet(tmp_path / FILE)
     (tmp_path / "figures").write_text("in the way")
     with pytest.raises(InputError, match="must be a writable file"):
-        draw(tmp_path)
+        write_contribution_figure(tmp_path)
