@@ -1,4 +1,4 @@
-"""The robots of a game: where they start, who they are, and what is left without some of them."""
+"""The robots of a game: bodies, policies, and removal of absent robots."""
 
 from collections.abc import Sequence
 from random import Random
@@ -8,6 +8,7 @@ from mesa.experimental.continuous_space import ContinuousSpace
 
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.spec import deal, parse_policies
+from kswarms.agents.robot.controller import Habits
 from kswarms.agents.robot.host import World
 from kswarms.agents.robot.krembot import Krembot
 from kswarms.agents.robot.state import Fleet
@@ -15,6 +16,23 @@ from kswarms.agents.streams import Streams
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game
 from kswarms.model.placement import start_poses
+
+
+def controller_constants(game: Game) -> Habits:
+    """Return the constants of the robots' controller."""
+    parameters, body = game.parameters, game.body
+    return Habits(
+        period=parameters.period,
+        turn_step=parameters.turning_rate * parameters.period,
+        leg_mean=parameters.leg_mean,
+        wander_turn=parameters.wander_turn,
+        half=game.side / 2,
+        wall_reach=body.radius + body.sensing_scale * parameters.wall_distance,
+        wall_half_angle=parameters.wall_half_angle,
+        radius=body.radius,
+        active_range=body.sensing_scale * parameters.active_range,
+        escape_away=parameters.wall_escape == "away",
+    )
 
 
 def place(game: Game, arena: Arena, seed: int, random: Random) -> tuple[ContinuousSpace, Fleet]:
@@ -93,7 +111,7 @@ def make_robots(model: World, game: Game, seed: int) -> list[Krembot]:
     return robots
 
 
-def take_away(model: World, robots: Sequence[Krembot], absent: Sequence[int]) -> list[Krembot]:
+def remove_robots(model: World, robots: Sequence[Krembot], absent: Sequence[int]) -> list[Krembot]:
     """Take robots out of a game, and return the others, whose rows close their ranks.
 
     Parameters

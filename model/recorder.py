@@ -1,8 +1,9 @@
-"""What is kept of a game: Mesa's DataCollector, the tables of records, the row of results (section 3.5)."""
+"""Recording of a game: samples in Mesa's DataCollector, recorded tables, rows of results (section 3.5)."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from mesa import DataCollector
 
@@ -10,28 +11,37 @@ from kswarms.agents.actions import TOWARDS
 from kswarms.agents.common.columns import RECORDED_TABLES, names
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.saved import best_actions, save, snapshot_of
-from kswarms.agents.robot.conflict import Conflict
 from kswarms.agents.theory.swarms import swarm_utility_difference
-
-if TYPE_CHECKING:
-    from kswarms.model.game_model import GameModel
+from kswarms.model.game_state import GameState
 
 RECORDS: Final = ("model", "agents", *RECORDED_TABLES)
-"""What can be recorded: samples of the model, of the agents; tables of conflicts, robots, positions."""
+"""Samples of the model and of the agents; tables of conflicts, robots and positions."""
 
 Table = dict[str, list[Any]]
 
-_CONFLICT_COLUMNS: Final = names("conflicts")[1:]  # without the run
+_CONFLICTS, _ROBOTS, _TRAJECTORY = (names(table)[1:] for table in RECORDED_TABLES)  # without the run
+_OF_GAME: Final = ("swarm", "duration", "ended")
+"""Columns of results that are not values of one swarm."""
+_AGENT_REPORTERS: Final[dict[str, Callable[[Any], Any]]] = {
+    "swarm": lambda robot: robot.swarm + 1,
+    "state": lambda robot: robot.state,
+    "puck": lambda robot: robot.carrying,
+    "x": lambda robot: float(robot.position[0]),
+    "y": lambda robot: float(robot.position[1]),
+    "heading": lambda robot: robot.heading,
+}
 
 
 def parse_record(text: str) -> frozenset[str]:
-    """Read a comma-separated list of `RECORDS`.
+    """Parse a comma-separated list of `RECORDS`.
 
     Raises
     ------
     InputError
-        If there is an unknown name in it.
+        If a name is unknown.
     """
+    if not isinstance(text, str):
+        raise InputError("record", text, "must be a text")
     record = frozenset(name.strip() for name in text.split(",") if name.strip())
     for name in sorted(record):
         if name not in RECORDS:
@@ -39,134 +49,164 @@ def parse_record(text: str) -> frozenset[str]:
     return record
 
 
-def make_collector(swarms: int, record: frozenset[str]) -> DataCollector:
-    """Build the DataCollector with what is to be recorded.
+class Recorder:
+    """Records a game.
 
-    Model reporters: ``time`` (s) and for each swarm ``pucks_k``, ``sud_k``, ``share_a_k``, ``share_p_k``.
-    Agent reporters: swarm, state, puck, x, y, heading. Table: conflicts.
+    Model reporters: ``time`` and ``duration`` (s), ``ended``, and for swarm k the columns of the table
+    ``runs``, such as ``pucks_k`` and ``t_p_k``; ``share_a_k`` and ``share_p_k``, its fractions of T(a), T(p).
+    Agent reporters: swarm, state, puck, x, y and heading. Table: conflicts.
+
+    Parameters
+    ----------
+    state : GameState
+        State of the game.
+    record : frozenset of str
+        Subset of `RECORDS`.
+
+    Attributes
+    ----------
+    collector : mesa.DataCollector
+        Samples, and the table of conflicts.
+    samples : bool
+        Whether anything is recorded at the samples.
+    sample_times : list of float
+        Times of the samples (s).
     """
-    model_reporters: dict[str, Callable[[Any], Any]] = {}
-    if "model" in record:
-        model_reporters["time"] = lambda model: model.time
-        for k in range(swarms):
-            model_reporters |= _swarm_reporters(k)
-    agent_reporters: dict[str, Callable[[Any], Any]] = {}
-    if record & {"agents", "trajectory"}:
-        agent_reporters = {
-            "swarm": lambda robot: robot.swarm + 1,
-            "state": lambda robot: robot.state,
-            "puck": lambda robot: robot.carrying,
-            "x": lambda robot: float(robot.position[0]),
-            "y": lambda robot: float(robot.position[1]),
-            "heading": lambda robot: robot.heading,
-        }
-    tables = {"conflicts": list(_CONFLICT_COLUMNS)} if "conflicts" in record else {}
-    return DataCollector(model_reporters, agent_reporters, tables=tables)
+
+    def __init__(self, state: GameState, record: frozenset[str]) -> None:
+        self._state = state
+        self._record = record
+        self._row: dict[str, Any] = {}
+        self.samples = bool(record & {"model", "agents", "trajectory"})
+        self.sample_times: list[float] = []
+        row = _sample_row(state) if "model" in record else {}
+        self.collector = DataCollector(
+            {name: partial(self._read, name) for name in row},
+            _AGENT_REPORTERS if record & {"agents", "trajectory"} else {},
+            tables={"conflicts": list(_CONFLICTS)} if "conflicts" in record else {},
+        )
+
+    def _read(self, name: str, _: object) -> Any:
+        if name == "time":  # the first reporter; the others read the same row
+            self._row = _sample_row(self._state)
+        return self._row[name]
+
+    def sample(self) -> None:
+        """Sample the game as it is now."""
+        self.flush_conflicts()
+        self.sample_times.append(self._state.time)
+        self.collector.collect(self._state)
+
+    def flush_conflicts(self) -> None:
+        """Move the closed conflicts to the table: times in seconds, swarms counted from 1.
+
+        ``seen`` has a tuple per swarm: the numbers of its robots that the sensors read, ascending.
+        """
+        log, state = self._state.conflict_log, self._state
+        if not log:
+            return
+        seconds, robots = state.habits.seconds, state.robots
+        for c in log:
+            robot, opponent = robots[c.robot], robots[c.opponent]
+            seen: list[list[int]] = [[] for _ in state.members]
+            for j in sorted(c.seen):
+                if j >= 0:
+                    seen[robots[j].swarm].append(robots[j].number)
+            identity = (state.phase, robot.number, robot.swarm + 1, opponent.number, opponent.swarm + 1)
+            begin = (seconds(c.start), c.x, c.y, c.action.name)
+            end = (seconds(c.t_a), seconds(c.t_p), c.active, tuple(map(tuple, seen)), c.reward, c.value)
+            row = dict(zip(_CONFLICTS, identity + begin + end, strict=True))
+            self.collector.add_table_row("conflicts", row)
+        log.clear()
+
+    def tables(self) -> dict[str, Table]:
+        """Return the recorded tables by name."""
+        tables: dict[str, Table] = {}
+        if "conflicts" in self._record:
+            tables["conflicts"] = self.collector.tables["conflicts"]
+        if "robots" in self._record:
+            tables["robots"] = self._robots()
+        if "trajectory" in self._record:
+            tables["trajectory"] = self._trajectory()
+        return tables
+
+    def _robots(self) -> Table:
+        seconds = self._state.habits.seconds
+        rows = []
+        for robot in self._state.robots:
+            t_a, t_p = robot.times()
+            rows.append(
+                (
+                    robot.number,
+                    robot.swarm + 1,
+                    robot.policy_name,
+                    robot.pucks,
+                    seconds(sum(t_a)),
+                    seconds(t_p),
+                    snapshot_of(robot.policy),
+                )
+            )
+        return dict(zip(_ROBOTS, map(list, zip(*rows, strict=True)), strict=True))
+
+    def _trajectory(self) -> Table:
+        table: Table = {name: [] for name in _TRAJECTORY}
+        for step, rows in self.collector._agent_records.items():
+            for row in rows:
+                seen = dict(zip(_AGENT_REPORTERS, row[2:], strict=True))
+                seen |= {"time": self.sample_times[step], "robot": row[1] - 1}
+                for name, values in table.items():
+                    values.append(seen[name])
+        return table
 
 
-def _swarm_reporters(swarm: int) -> dict[str, Callable[[Any], Any]]:
+def _sample_row(state: GameState) -> dict[str, Any]:
+    """Return the values of all model reporters."""
+    sample = {"time": state.time, "duration": state.duration, "ended": state.ended}
+    for k in range(len(state.members)):
+        t_a, t_p = state.times(k)
+        played = sum(t_a) + t_p
+        share = sum(t_a) / played if played > 0 else 0.0
+        row = _result_row(state, k, t_a, t_p) | {"share_a": share, "share_p": 1.0 - share}
+        sample |= {f"{name}_{k + 1}": value for name, value in row.items() if name not in _OF_GAME}
+    return sample
+
+
+def result_rows(state: GameState) -> list[dict[str, Any]]:
+    """Return one row per swarm: the columns of the table ``runs`` from ``swarm`` on."""
+    return [_result_row(state, k, *state.times(k)) for k in range(len(state.members))]
+
+
+def _result_row(state: GameState, k: int, t_a: list[int], t_p: int) -> dict[str, Any]:
+    seconds, members = state.habits.seconds, state.members[k]
+    conflicts = [sum(robot.conflicts[m] for robot in members) for m in range(len(t_a))]
     return {
-        f"pucks_{swarm + 1}": lambda model: model.pucks[swarm],
-        f"sud_{swarm + 1}": lambda model: swarm_utility_difference(model.pucks, swarm),
-        f"share_a_{swarm + 1}": lambda model: _share_of_action(model, swarm),
-        f"share_p_{swarm + 1}": lambda model: 1.0 - _share_of_action(model, swarm),
+        "swarm": k + 1,
+        "size": len(members),
+        "policy": state.game.swarms[k].policy,
+        "pucks": state.pucks[k],
+        "sud": swarm_utility_difference(state.pucks, k),
+        "t_a_intra": seconds(t_a[k]),
+        "t_a_inter": seconds(sum(t_a) - t_a[k]),
+        "t_p": seconds(t_p),
+        "conflicts_intra": conflicts[k],
+        "conflicts_inter": sum(conflicts) - conflicts[k],
+        "duration": state.duration,
+        "ended": state.ended,
     }
 
 
-def _share_of_action(model: "GameModel", swarm: int) -> float:
-    """Return a swarm's T(a) / (T(a) + T(p)) so far, 0 at the very start."""
-    t_a, t_p = model.times(swarm)
-    played = sum(t_a) + t_p
-    return sum(t_a) / played if played > 0 else 0.0
+def policy_rows(state: GameState) -> list[dict[str, Any]]:
+    """Return what the swarms learned: the columns of the table ``policies`` from ``swarm`` on.
 
-
-def add_conflicts(model: "GameModel", conflicts: Iterable[Conflict]) -> None:
-    """Write closed conflicts to the DataCollector's table, times in seconds, swarms counted from 1.
-
-    ``seen`` has a tuple for each swarm: the numbers of its robots that the sensors read, ascending.
+    There is one row per learning swarm, swarm learned about and action.
     """
-    seconds, robots = model.habits.seconds, model.robots
-    for c in conflicts:
-        robot, opponent = robots[c.robot], robots[c.opponent]
-        seen: list[list[int]] = [[] for _ in model.members]
-        for j in sorted(c.seen):
-            if j >= 0:
-                seen[robots[j].swarm].append(robots[j].number)
-        row = (
-            *(model.phase, robot.number, robot.swarm + 1, opponent.number, opponent.swarm + 1),
-            *(seconds(c.start), c.x, c.y, c.action.name, seconds(c.t_a), seconds(c.t_p), c.active),
-            *(tuple(map(tuple, seen)), c.reward, c.value),
-        )
-        model.datacollector.add_table_row("conflicts", dict(zip(_CONFLICT_COLUMNS, row, strict=True)))
-
-
-def robots_table(model: "GameModel") -> Table:
-    """Return one row for each robot, times in seconds."""
-    seconds = model.habits.seconds
-    times = [robot.times() for robot in model.robots]
-    return {
-        "robot": [robot.number for robot in model.robots],
-        "swarm": [robot.swarm + 1 for robot in model.robots],
-        "policy": [robot.policy_name for robot in model.robots],
-        "pucks": [robot.pucks for robot in model.robots],
-        "t_a": [seconds(sum(t_a)) for t_a, _ in times],
-        "t_p": [seconds(t_p) for _, t_p in times],
-        "arms": [snapshot_of(robot.policy) for robot in model.robots],
-    }
-
-
-def trajectory_table(model: "GameModel") -> Table:
-    """Return where every robot was at every sample."""
-    table: Table = {name: [] for name in names("trajectory")[1:]}
-    reporters = list(model.datacollector.agent_reporters)
-    for step, rows in model.datacollector._agent_records.items():
-        for row in rows:
-            seen = dict(zip(reporters, row[2:], strict=True))
-            seen |= {"time": model.sample_times[step], "robot": row[1] - 1}
-            for name in table:
-                table[name].append(seen[name])
-    return table
-
-
-def result_rows(model: "GameModel") -> list[dict[str, Any]]:
-    """Return one row for each swarm with the columns of ``runs.parquet`` that the game knows of."""
-    seconds = model.habits.seconds
+    actions = state.game.action_set
     rows = []
-    for k, swarm in enumerate(model.game.swarms):
-        t_a, t_p = model.times(k)
-        conflicts = [sum(robot.conflicts[m] for robot in model.members[k]) for m in range(len(t_a))]
-        rows.append(
-            {
-                "swarm": k + 1,
-                "size": len(model.members[k]),
-                "policy": swarm.policy,
-                "pucks": model.pucks[k],
-                "sud": swarm_utility_difference(model.pucks, k),
-                "t_a_intra": seconds(t_a[k]),
-                "t_a_inter": seconds(sum(t_a) - t_a[k]),
-                "t_p": seconds(t_p),
-                "conflicts_intra": conflicts[k],
-                "conflicts_inter": sum(conflicts) - conflicts[k],
-                "duration": model.duration,
-                "ended": model.ended,
-            }
-        )
-    return rows
-
-
-def policy_rows(model: "GameModel") -> list[dict[str, Any]]:
-    """Return, for each learning swarm, swarm learned about and action, the share of robots that chose it.
-
-    The columns of ``policies.parquet`` from ``swarm`` on.
-    """
-    rows = []
-    for k, members in enumerate(model.members):
-        of_robots = [best_actions(snapshot_of(robot.policy), model.game.action_set) for robot in members]
-        for opponent in sorted({m for actions in of_robots for m in actions}):
-            learned = [actions[opponent] for actions in of_robots if opponent in actions]
-            shares = {
-                a.name: sum(b.name == a.name for b in learned) / len(learned) for a in model.game.action_set
-            }
+    for k, members in enumerate(state.members):
+        of_robots = [best_actions(snapshot_of(robot.policy), actions) for robot in members]
+        for opponent in sorted({m for best in of_robots for m in best}):
+            learned = [best[opponent] for best in of_robots if opponent in best]
+            shares = {a.name: sum(b.name == a.name for b in learned) / len(learned) for a in actions}
             attack_share = sum(action.direction == TOWARDS for action in learned) / len(learned)
             rows += [
                 {
@@ -181,19 +221,19 @@ def policy_rows(model: "GameModel") -> list[dict[str, Any]]:
     return rows
 
 
-def save_policies(model: "GameModel", swarm: int, path: Path) -> None:
-    """Write what the robots of a swarm (from 1) have learned, to be played as ``learned(file="…")``.
+def save_policies(state: GameState, swarm: int, path: Path) -> None:
+    """Save what the robots of a swarm (from 1) learned, for the policy ``learned(file="…")``.
 
     Raises
     ------
     InputError
-        If it is no swarm of the game, or not one of learners.
+        If the game has no such swarm, or it does not learn.
     OSError
-        If the file cannot be written; then nothing is.
+        If the file cannot be written; an existing file is unchanged.
     """
-    if not 1 <= swarm <= len(model.members):
-        raise InputError("swarm", swarm, f"must be in 1 to {len(model.members)}")
-    learned = [snapshot_of(robot.policy) for robot in model.members[swarm - 1]]
+    if not 1 <= swarm <= len(state.members):
+        raise InputError("swarm", swarm, f"must be in 1 to {len(state.members)}")
+    learned = [snapshot_of(robot.policy) for robot in state.members[swarm - 1]]
     if not all(learned):
         raise InputError("swarm", swarm, "must be a swarm of learners")
     save(path, swarm, learned)

@@ -59,8 +59,8 @@ def run_script(folder: Path, processes: int, period: int) -> list[Row]:
 
 def played(row: Row) -> ForagingModel:
     """Return the game of a row, played directly."""
-    names = ("n", "policies", "seed", "duration", "puck_limit")
-    model = ForagingModel(**{name: row[name] for name in names})
+    names = ("n", "policies", "seed", "puck_limit")
+    model = ForagingModel(duration=47.0, **{name: row[name] for name in names})
     model.play()
     return model
 
@@ -90,9 +90,11 @@ def test_the_last_row_is_the_state_at_the_end(tmp_path: Path) -> None:
     assert {row["time"] for row in rows if row["puck_limit"] == 0} == {47.0}
     for row in rows:
         for result in played(row).results():
-            k = result["swarm"]
+            k = result.pop("swarm")
+            of_game = {name: result.pop(name) for name in ("duration", "ended")}
+            assert {name: row[name] for name in of_game} == of_game
+            assert {name: row[f"{name}_{k}"] for name in result} == result
             time_in_action = result["t_a_intra"] + result["t_a_inter"]
-            assert (row[f"pucks_{k}"], row[f"sud_{k}"]) == (result["pucks"], result["sud"])
             share = time_in_action / (time_in_action + result["t_p"])
             assert (row[f"share_a_{k}"], row[f"share_p_{k}"]) == pytest.approx((share, 1 - share))
 

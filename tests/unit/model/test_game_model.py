@@ -87,13 +87,24 @@ def test_the_models_frame() -> None:
     model = played("model")
     frame = model.datacollector.get_model_vars_dataframe()
     kinds = ("pucks", "sud", "share_a", "share_p")
-    assert set(frame.columns) == {"time", *(f"{kind}_{k}" for kind in kinds for k in (1, 2, 3))}
+    of_swarm = {
+        *kinds,
+        "size",
+        "policy",
+        "t_a_intra",
+        "t_a_inter",
+        "t_p",
+        "conflicts_intra",
+        "conflicts_inter",
+    }
+    of_swarms = {f"{kind}_{k}" for kind in of_swarm for k in (1, 2, 3)}
+    assert set(frame.columns) == {"time", "duration", "ended"} | of_swarms
     assert frame["time"].tolist() == [0, 10, 20, 30, 40, 50, 60] == model.sample_times
     start, end = frame.iloc[0], frame.iloc[-1]
     assert [start[f"{kind}_1"] for kind in kinds] == [0, 0, 0, 1]
     for row in model.results():
         k, played_time = row["swarm"], row["size"] * 60.0
-        assert (end[f"pucks_{k}"], end[f"sud_{k}"]) == (row["pucks"], row["sud"])
+        assert all(end[f"{name}_{k}"] == row[name] for name in of_swarm & row.keys())
         assert end[f"share_a_{k}"] == pytest.approx((row["t_a_intra"] + row["t_a_inter"]) / played_time)
         assert end[f"share_p_{k}"] == pytest.approx(row["t_p"] / played_time)
     assert frame.filter(like="pucks").diff().min().min() in (0, np.nan)
