@@ -216,37 +216,39 @@ def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool =
     return shown(runs, scenario, title, detail)
 
 
-def draw(results_dir: Path, scenario_ids: Sequence[str], titles: Mapping[str, str]) -> list[Path]:
-    """Write `figures/<id>.png` in a results directory for each of the scenarios that it has runs of.
+def write_figures(
+    results: Path, out: Path, scenarios: Sequence[str] | None = None, titles: Mapping[str, str] | None = None
+) -> list[Path]:
+    """Write the figure of each scenario of the results as `<id>.png`.
 
     Parameters
     ----------
-    results_dir : Path
-        A directory that holds `runs.parquet`.
-    scenario_ids : sequence of str
-        Scenarios asked for; one without runs is left out.
-    titles : mapping of str to str
-        What each scenario is, printed after its id; an id may be absent.
+    results : Path
+        Directory with `runs.parquet`.
+    out : Path
+        Folder of the figures; it is created if it does not exist.
+    scenarios : sequence of str, optional
+        Ids of the scenarios to draw, by default all; scenarios without runs are skipped.
+    titles : mapping of str to str, optional
+        Titles of scenarios.
 
     Returns
     -------
     list of Path
-        The files written, in the order of `scenario_ids`. Each is written whole or not at all.
+        The figures, in the order of `scenarios`.
 
     Raises
     ------
     InputError
-        The runs cannot be read or the figures cannot be written.
+        The runs cannot be read, or a figure cannot be written; then an existing figure is unchanged.
     """
-    runs = read_runs(results_dir)
-    present = set(runs["scenario"])
+    runs = read_runs(results)
+    present = dict.fromkeys(runs["scenario"])
     paths = []
-    for scenario in scenario_ids:
-        if scenario not in present:
-            continue
-        path = results_dir / "figures" / f"{scenario}.png"
-        save(figure_of(runs, scenario, titles.get(scenario, "")), path)
-        paths.append(path)
+    for scenario in present if scenarios is None else scenarios:
+        if scenario in present:
+            paths.append(out / f"{scenario}.png")
+            save(figure_of(runs, scenario, (titles or {}).get(scenario, "")), paths[-1])
     return paths
 
 

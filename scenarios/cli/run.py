@@ -90,10 +90,10 @@ def run(
     tables, failed = _play(scenarios, first_seed, workers, scheduler, records, out, kind, command)
     lines = [f"table:  {table}" for table in tables]
     if tables and not no_figures:
-        from kswarms.analysis.figures.over_n import draw
+        from kswarms.analysis.figures.over_n import write_figures
 
         titles = {scenario.id: scenario.title for scenario in scenarios}
-        lines += [f"figure: {picture}" for picture in draw(out, list(titles), titles)]
+        lines += [f"figure: {path}" for path in write_figures(out, out / "figures", list(titles), titles)]
     if not quiet:
         for line in lines:
             typer.echo(line)

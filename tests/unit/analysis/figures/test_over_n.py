@@ -1,4 +1,4 @@
-"""What the first figures show, and how they are written."""
+"""Figures over the number of robots."""
 
 from pathlib import Path
 
@@ -16,12 +16,12 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.colours import SWARM_COLOURS
 from kswarms.analysis.figures.over_n import (
     TIME_SHARES,
-    draw,
     figure_of,
     pucks_over_n,
     quantities,
     sud_over_n,
     time_shares,
+    write_figures,
 )
 from tests.helpers.result_rows import DENSITIES, runs_of
 
@@ -29,7 +29,7 @@ PNG = b"\x89PNG\r\n\x1a\n"
 
 
 def curves(axes: Axes) -> dict[str, Line2D]:
-    """Find the curves by the names that the legend gives them."""
+    """Return the curves by their names in the legend."""
     handles, labels = axes.get_legend_handles_labels()
     return dict(zip(labels, handles, strict=True))
 
@@ -39,7 +39,7 @@ def heights(line: Line2D) -> list[float]:
 
 
 def points(axes: Axes) -> list[np.ndarray]:
-    """Find the single seeds (n, value) of each curve."""
+    """Return the single seeds (n, value) of each curve."""
     return [
         np.asarray(drawn.get_offsets()) for drawn in axes.collections if isinstance(drawn, PathCollection)
     ]
@@ -50,7 +50,7 @@ def legend(figure: Figure) -> list[str]:
     return [text.get_text() for text in drawn.get_texts()]
 
 
-def test_swarms_have_the_form_of_the_source() -> None:
+def test_swarms_have_the_line_styles_of_the_source() -> None:
     (axes,) = pucks_over_n(runs_of("fig-x", swarms=(1, 2, 3)), "fig-x").axes
     forms = {
         label: (line.get_color(), line.get_linestyle(), line.get_marker(), line.get_markerfacecolor())
@@ -64,14 +64,14 @@ def test_swarms_have_the_form_of_the_source() -> None:
     }
 
 
-def test_curve_is_the_mean_over_the_seeds_of_its_own_scenario() -> None:
+def test_a_curve_is_the_mean_over_the_seeds_of_its_scenario() -> None:
     runs = pd.concat([runs_of("fig-x"), runs_of("fig-y").assign(pucks=0)])
     (axes,) = pucks_over_n(runs, "fig-x").axes
     assert heights(curves(axes)["S1: avoid"]) == [16, 26, 36]
     assert heights(curves(axes)["S2: attack"]) == [26, 36, 46]
 
 
-def test_every_seed_is_a_point_beside_its_density() -> None:
+def test_each_seed_is_a_point_near_its_density() -> None:
     (axes,) = pucks_over_n(runs_of("fig-x"), "fig-x").axes
     of_s1, of_s2 = points(axes)
     assert sorted(of_s1[:, 1]) == sorted([15, 17] * 2 + [25, 27] * 2 + [35, 37] * 2)
@@ -81,7 +81,7 @@ def test_every_seed_is_a_point_beside_its_density() -> None:
     assert np.abs(of_s2[:, 0] - np.repeat(DENSITIES, 4)).max() <= 1
 
 
-def test_band_is_an_interval_of_the_mean_whatever_the_order_of_rows() -> None:
+def test_a_band_is_an_interval_of_the_mean_and_ignores_the_order_of_rows() -> None:
     runs = runs_of("fig-x", seeds=8)
     runs["pucks"] += np.random.default_rng(3).integers(0, 9, len(runs))
     bands = []
@@ -95,7 +95,7 @@ def test_band_is_an_interval_of_the_mean_whatever_the_order_of_rows() -> None:
     assert at_6.min() < edges.min() < at_6.mean() < edges.max() < at_6.max()
 
 
-def test_conditions_of_one_swarm_are_a_curve_each() -> None:
+def test_each_condition_of_one_swarm_has_a_curve() -> None:
     runs = runs_of("fig-6.15", swarms=(1,), conditions=("flight 50 ms", "fight"))
     figure = pucks_over_n(runs, "fig-6.15")
     (axes,) = figure.axes
@@ -118,7 +118,7 @@ def test_conditions_of_several_swarms_keep_the_swarms_markers() -> None:
     assert filled.get_markerfacecolor() == filled.get_color() == open_marker.get_color()
 
 
-def test_legend_leaves_out_the_arguments_of_a_policy() -> None:
+def test_the_legend_omits_the_arguments_of_a_policy() -> None:
     runs = runs_of("fig-x").replace(
         {"policy": {"attack": """avoid+inter-learner(reward="wlu(delta=0.1, b=1.5)", rule='ucb')"""}}
     )
@@ -137,8 +137,8 @@ def test_labels_title_and_seeds() -> None:
     assert axes.get_ylabel() == "pucks deposited by the swarm"
     assert figure.get_suptitle().startswith("fig-x: a title")
     assert max(map(len, figure.get_suptitle().splitlines())) <= 75
-    whole = pucks_over_n(runs, "fig-x", "an inter-learner " * 8).get_suptitle()
-    assert not any(line.endswith("inter-") for line in whole.splitlines())
+    hyphens = pucks_over_n(runs, "fig-x", "an inter-learner " * 8).get_suptitle()
+    assert not any(line.endswith("inter-") for line in hyphens.splitlines())
     assert figure.legends[0].get_title().get_text().startswith("mean of 4 seeds")
     assert list(axes.get_xticks()) == [6, 16, 26]
     fewer = runs[(runs["n"] != 6) | (runs["seed"] == 0)]
@@ -146,7 +146,7 @@ def test_labels_title_and_seeds() -> None:
     assert pucks_over_n(runs, "fig-x").get_suptitle() == "fig-x"
 
 
-def test_one_density_has_a_bar_for_each_interval() -> None:
+def test_a_single_density_has_bars_as_intervals() -> None:
     figure = pucks_over_n(runs_of("fig-x", densities=[20], seeds=8), "fig-x")
     bars = [drawn for drawn in figure.axes[0].collections if isinstance(drawn, LineCollection)]
     ends = [sorted(segment[:, 1]) for drawn in bars for segment in drawn.get_segments()]
@@ -168,7 +168,7 @@ def test_many_densities_get_the_ticks_of_matplotlib() -> None:
     assert len(axes.get_xticks()) < 20
 
 
-def test_time_shares_in_all_and_by_kind_of_conflict() -> None:
+def test_time_shares_have_a_panel_for_each_kind_of_conflict() -> None:
     figure = time_shares(runs_of("fig-6.3"), "fig-6.3")
     shown = {
         axes.get_title(): {label: heights(line) for label, line in curves(axes).items()}
@@ -198,21 +198,21 @@ def test_sud_of_the_second_swarm_by_condition() -> None:
     assert heights(curves(of_s3)["avoid"]) == [-24, -14, -4]
 
 
-@pytest.mark.parametrize("show", [pucks_over_n, time_shares, sud_over_n])
-def test_scenario_without_runs(show: type) -> None:
+@pytest.mark.parametrize("draw", [pucks_over_n, time_shares, sud_over_n])
+def test_a_scenario_without_runs_is_an_error(draw: type) -> None:
     with pytest.raises(InputError, match=r"scenario='fig-6\.9': must be one of fig-x, fig-y"):
-        show(pd.concat([runs_of("fig-y"), runs_of("fig-x")]), "fig-6.9")
+        draw(pd.concat([runs_of("fig-y"), runs_of("fig-x")]), "fig-6.9")
 
 
-def test_swarm_that_the_scenario_does_not_have() -> None:
+def test_an_unknown_swarm_is_an_error() -> None:
     with pytest.raises(InputError, match=r"swarm=2: must be one of 1 in fig-6\.15"):
         sud_over_n(runs_of("fig-6.15", swarms=(1,)), "fig-6.15")
 
 
-def test_draw_writes_each_scenario_that_has_runs(tmp_path: Path) -> None:
+def test_write_figures_writes_each_scenario_with_runs(tmp_path: Path) -> None:
     runs = pd.concat([runs_of("fig-6.1a"), runs_of("fig-6.3"), runs_of("fig-7.10"), runs_of("fig-7.12")])
     runs.to_parquet(tmp_path / "runs.parquet")
-    paths = draw(tmp_path, ["fig-7.10", "fig-6.3", "fig-7.1", "fig-6.1a"], {"fig-6.1a": "avoid and avoid"})
+    paths = write_figures(tmp_path, tmp_path / "figures", ["fig-7.10", "fig-6.3", "fig-7.1", "fig-6.1a"])
     assert paths == [tmp_path / "figures" / f"{name}.png" for name in ("fig-7.10", "fig-6.3", "fig-6.1a")]
     assert set(paths) == set((tmp_path / "figures").iterdir())
     assert all(path.read_bytes().startswith(PNG) for path in paths)
@@ -231,15 +231,15 @@ SHOWING_SUD = ("6.10a", "6.10b", "6.12", "6.14", "7.4", "7.6", "7.8", "7.10", "7
         *((f"fig-{number}", "SUD of S2 (pucks)") for number in SHOWING_SUD),
     ],
 )
-def test_the_figure_of_a_scenario_shows_what_it_is_for(scenario: str, label: str) -> None:
+def test_the_figure_of_a_scenario_shows_the_quantity_of_the_source(scenario: str, label: str) -> None:
     figure = figure_of(runs_of(scenario), scenario, "its title")
     assert figure.axes[0].get_ylabel().startswith(label)
     assert figure.get_suptitle() == f"{scenario}: its title"
-    told = {"pucks": ("pucks",), "SUD": ("sud",), "share": TIME_SHARES}[label.split()[0]]
-    assert quantities(scenario) == told
+    expected = {"pucks": ("pucks",), "SUD": ("sud",), "share": TIME_SHARES}[label.split()[0]]
+    assert quantities(scenario) == expected
 
 
-def test_the_source_s_form_has_means_alone() -> None:
+def test_without_detail_a_figure_shows_only_means() -> None:
     figure = pucks_over_n(runs_of("fig-x"), "fig-x", detail=False)
     (axes,) = figure.axes
     assert list(axes.collections) == []
@@ -248,46 +248,44 @@ def test_the_source_s_form_has_means_alone() -> None:
     assert figure.legends[0].get_title().get_text() == "mean of 4 seeds"
 
 
-def test_same_runs_same_picture(tmp_path: Path) -> None:
+def test_the_same_runs_give_the_same_bytes(tmp_path: Path) -> None:
     runs_of("fig-x", seeds=8).to_parquet(tmp_path / "runs.parquet")
-    (path,) = draw(tmp_path, ["fig-x"], {})
+    (path,) = write_figures(tmp_path, tmp_path / "figures")
     first = path.read_bytes()
-    draw(tmp_path, ["fig-x"], {})
+    write_figures(tmp_path, tmp_path / "figures")
     assert path.read_bytes() == first
     runs_of("fig-x", seeds=9).to_parquet(tmp_path / "runs.parquet")
-    draw(tmp_path, ["fig-x"], {})
+    write_figures(tmp_path, tmp_path / "figures")
     assert path.read_bytes() != first
 
 
-def test_interrupted_writing_leaves_the_old_picture_and_nothing_else(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_interrupted_write_leaves_the_old_figure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     runs_of("fig-x").to_parquet(tmp_path / "runs.parquet")
-    (path,) = draw(tmp_path, ["fig-x"], {})
+    (path,) = write_figures(tmp_path, tmp_path / "figures")
     first = path.read_bytes()
 
-    def full_disk(part: Path, picture: bytes) -> None:
+    def full_disk(part: Path, content: bytes) -> None:
         with part.open("wb") as file:
-            file.write(picture[:100])
+            file.write(content[:100])
         raise OSError("No space left on device")
 
     monkeypatch.setattr(Path, "write_bytes", full_disk)
     with pytest.raises(InputError, match="must be a writable file"):
-        draw(tmp_path, ["fig-x"], {"fig-x": "another title"})
+        write_figures(tmp_path, tmp_path / "figures", titles={"fig-x": "another title"})
     assert path.read_bytes() == first
     assert list(path.parent.iterdir()) == [path]
 
 
-def test_figures_that_cannot_be_written(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_created_is_an_error(tmp_path: Path) -> None:
     runs_of("fig-x").to_parquet(tmp_path / "runs.parquet")
     (tmp_path / "figures").write_text("in the way")
     with pytest.raises(InputError, match="must be a writable file"):
-        draw(tmp_path, ["fig-x"], {})
+        write_figures(tmp_path, tmp_path / "figures")
 
 
-def test_nothing_global_changes(tmp_path: Path) -> None:
+def test_global_settings_do_not_change(tmp_path: Path) -> None:
     runs_of("fig-6.3").to_parquet(tmp_path / "runs.parquet")
     before = dict(mpl.rcParams)
-    draw(tmp_path, ["fig-6.3"], {})
+    write_figures(tmp_path, tmp_path / "figures")
     assert dict(mpl.rcParams) == before
     assert plt.get_fignums() == []
