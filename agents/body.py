@@ -1,4 +1,4 @@
-"""The Krembot's body and senses, in its two scales (specification, section 2.2). SI units."""
+"""Bodies of robots (specification, section 2.2). SI units."""
 
 from typing import Final
 
@@ -7,11 +7,11 @@ from pydantic import Field
 from kswarms.agents.common.descriptions import Checked
 
 SENSORS: Final = 8
-"""Proximity sensors of a Krembot, one every 45°, the first looking ahead."""
+"""Number of proximity sensors, one every 45°, the first ahead."""
 
 
 class Body(Checked):
-    """A robot's body.
+    """Body of a robot.
 
     Attributes
     ----------
@@ -20,9 +20,9 @@ class Body(Checked):
     radius : float
         Radius of the body (m).
     sensor_range : float
-        How far a proximity sensor sees, from the body's surface (m).
+        Range of a proximity sensor, from the surface of the body (m).
     top_speed : float
-        Speed at a drive of 100 % (m/s).
+        Speed at a drive of 1 (m/s).
     """
 
     name: str = "user-defined"
@@ -32,7 +32,7 @@ class Body(Checked):
 
     @property
     def sensing_scale(self) -> float:
-        """Factor by which this body's sensing distances differ from the simulator scale's."""
+        """Ratio of this body's sensing distances to those of `KREMBOT_SIM`."""
         return self.radius / KREMBOT_SIM.radius
 
 

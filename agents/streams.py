@@ -1,8 +1,7 @@
-"""Random streams named by (seed, robot, purpose).
+"""Random streams, identified by (seed, robot, purpose).
 
-Every draw of a game comes from the stream of the robot that draws and of the decision it draws
-for. So two games with one seed differ only where they differ, and one robot more leaves the draws
-of the others alone.
+Every robot has a stream for each kind of decision. Two games with the same seed therefore draw the same
+numbers for the same decisions, and an additional robot does not change the draws of the others.
 """
 
 from enum import IntEnum
@@ -10,12 +9,12 @@ from typing import Final
 
 from numpy.random import PCG64, Generator, SeedSequence
 
-WORLD: Final = 2**32 - 1
-"""Robot number under which the world itself draws."""
+ENVIRONMENT: Final = 2**32 - 1
+"""Number, in place of a robot's, for draws of the environment."""
 
 
 class Purpose(IntEnum):
-    """What a stream is for. Values are part of every result: never change one, only add."""
+    """Purpose of a stream. Never change a value, since results depend on it; only add values."""
 
     POSITION = 0
     HEADING = 1
@@ -29,22 +28,22 @@ class Purpose(IntEnum):
 
 
 def stream(seed: int, robot: int, purpose: Purpose) -> Generator:
-    """Return the generator of one robot for one purpose, at its start.
+    """Return a new generator of a stream.
 
     Parameters
     ----------
     seed : int
         Seed of the run, ≥ 0.
     robot : int
-        Number of the robot in its game, or `WORLD`.
+        Number of the robot in its game, or `ENVIRONMENT`.
     purpose : Purpose
-        The decision that the draws are for.
+        Purpose of the draws.
     """
     return Generator(PCG64(SeedSequence(seed, spawn_key=(robot, int(purpose)))))
 
 
 class Streams:
-    """The streams of one robot, each begun when it is first drawn from.
+    """The streams of one robot, each created on first use.
 
     Parameters
     ----------
@@ -55,11 +54,11 @@ class Streams:
     def __init__(self, seed: int, robot: int) -> None:
         self.seed = seed
         self.robot = robot
-        self._begun: dict[Purpose, Generator] = {}
+        self._streams: dict[Purpose, Generator] = {}
 
     def draws(self, purpose: Purpose) -> Generator:
-        """Return the stream for a purpose, where it now is."""
-        draws = self._begun.get(purpose)
+        """Return the stream for a purpose, in its current state."""
+        draws = self._streams.get(purpose)
         if draws is None:
-            draws = self._begun[purpose] = stream(self.seed, self.robot, purpose)
+            draws = self._streams[purpose] = stream(self.seed, self.robot, purpose)
         return draws

@@ -49,16 +49,16 @@ class GameModel(GameState):
     def __init__(self, game: Game, seed: int = 0, record: str = "") -> None:
         recorded = parse_record(record)
         super().__init__(game, seed, log_conflicts="conflicts" in recorded)
-        self._kernel = Kernel(game, self.arena, self.fleet)
+        self._kernel = Kernel(game, self.arena, self.states)
         self._due = 0
         """Number of kernel events that wait for decisions of the robots."""
         if self.phase == "learning":
             Instant(self.env, BEFORE_TIMEOUTS, self._switch_phase).happen_in(self.begin)
-        end = self.begin + self.habits.periods(game.duration)
+        end = self.begin + self.controller.periods(game.duration)
         Instant(self.env, BEFORE_TIMEOUTS, self._time_out).happen_in(end)
         self._motion = Instant(self.env, AFTER_TIMEOUTS, self._move)
         self._motion.happen_in(0)
-        self._sample_every = self.habits.periods(game.sample_period)
+        self._sample_every = self.controller.periods(game.sample_period)
         self._sampled_end = False
         self.recorder = Recorder(self, recorded)
         self.datacollector = self.recorder.collector
@@ -127,7 +127,7 @@ class GameModel(GameState):
         if len(self.robots) < n:
             # The arrays of a kernel have a row per robot. A new kernel starts between two periods, as here.
             supply = self.supply
-            self._kernel = Kernel(self.game, self.arena, self.fleet)
+            self._kernel = Kernel(self.game, self.arena, self.states)
             self._kernel.supply[:] = supply
 
     def _time_out(self, _: Event) -> None:
@@ -188,7 +188,7 @@ class GameModel(GameState):
 
         def distance(request: tuple[Krembot, int]) -> float:
             robot, station = request
-            return math.dist(self.fleet.positions[robot.index], self.arena.stations[station])
+            return math.dist(self.states.positions[robot.index], self.arena.stations[station])
 
         for robot, station in sorted(pick_ups, key=distance):
             if supply[station] == 0:

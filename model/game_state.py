@@ -35,7 +35,7 @@ class GameState(mesa.Model):
         Walls, stations and bases.
     space : mesa.experimental.continuous_space.ContinuousSpace
         Positions of the robots; the kernel works on the same array.
-    fleet : Fleet
+    states : RobotStates
         State arrays of the robots.
     robots : list of Krembot
         Robots in the game, by number.
@@ -70,16 +70,16 @@ class GameState(mesa.Model):
         self.seed = int(seed)
         self.env = simpy.Environment()
         self.arena = game.arena(self.seed)
-        self.habits = controller_constants(game)
+        self.controller = controller_constants(game)
         self.action_periods: Mapping[str, int] = {
-            a.name: self.habits.periods(a.duration) for a in game.action_set
+            a.name: self.controller.periods(a.duration) for a in game.action_set
         }
         self.conflict_log: list[Conflict] | None = [] if log_conflicts else None
         self.begin = math.ceil(game.learning / game.parameters.period - 1e-9)
         self.phase = "learning" if self.begin > 0 else "game"
         self.ended = ""
         self._end_period: int | None = None
-        self.space, self.fleet = place(game, self.arena, self.seed, self.random)
+        self.space, self.states = place(game, self.arena, self.seed, self.random)
         self._set_robots(make_robots(self, game, self.seed))
         if game.absent_from == "learning" or self.begin == 0:
             self._remove_absent()
@@ -93,13 +93,13 @@ class GameState(mesa.Model):
     @property
     def time(self) -> float:
         """Seconds since the start, learning included."""
-        return self.habits.seconds(self.now)
+        return self.controller.seconds(self.now)
 
     @property
     def duration(self) -> float:
         """Seconds of the measured game so far."""
         now = self.now if self._end_period is None else self._end_period
-        return self.habits.seconds(max(0, now - self.begin))
+        return self.controller.seconds(max(0, now - self.begin))
 
     def times(self, swarm: int) -> tuple[list[int], int]:
         """Return T(a) of a swarm, by the swarm of the opponent, and T(p), up to now (robot-periods)."""

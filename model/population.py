@@ -8,20 +8,20 @@ from mesa.experimental.continuous_space import ContinuousSpace
 
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.spec import deal, parse_policies
-from kswarms.agents.robot.controller import Habits
-from kswarms.agents.robot.host import World
+from kswarms.agents.robot.controller import Controller
+from kswarms.agents.robot.host import Host
 from kswarms.agents.robot.krembot import Krembot
-from kswarms.agents.robot.state import Fleet
+from kswarms.agents.robot.state import RobotStates
 from kswarms.agents.streams import Streams
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game
 from kswarms.model.placement import start_poses
 
 
-def controller_constants(game: Game) -> Habits:
+def controller_constants(game: Game) -> Controller:
     """Return the constants of the robots' controller."""
     parameters, body = game.parameters, game.body
-    return Habits(
+    return Controller(
         period=parameters.period,
         turn_step=parameters.turning_rate * parameters.period,
         leg_mean=parameters.leg_mean,
@@ -35,7 +35,7 @@ def controller_constants(game: Game) -> Habits:
     )
 
 
-def place(game: Game, arena: Arena, seed: int, random: Random) -> tuple[ContinuousSpace, Fleet]:
+def place(game: Game, arena: Arena, seed: int, random: Random) -> tuple[ContinuousSpace, RobotStates]:
     """Put the bodies of all robots into the arena, at rest.
 
     Parameters
@@ -53,7 +53,7 @@ def place(game: Game, arena: Arena, seed: int, random: Random) -> tuple[Continuo
     -------
     space : mesa.experimental.continuous_space.ContinuousSpace
         Of the positions, without agents yet.
-    fleet : Fleet
+    states : RobotStates
         The rows of the robots, on the same array of positions.
 
     Raises
@@ -68,18 +68,18 @@ def place(game: Game, arena: Arena, seed: int, random: Random) -> tuple[Continuo
     space = ContinuousSpace([[-half, half], [-half, half]], torus=False, random=random, n_agents=game.size)
     swarm_of = np.repeat(np.arange(len(game.swarms)), [swarm.size for swarm in game.swarms])
     # The space's own array, so that Mesa's view of the positions is the kernel's.
-    fleet = Fleet(space._agent_positions, swarm_of, headings)
-    fleet.positions[:] = positions
-    return space, fleet
+    states = RobotStates(space._agent_positions, swarm_of, headings)
+    states.positions[:] = positions
+    return space, states
 
 
-def make_robots(model: World, game: Game, seed: int) -> list[Krembot]:
+def make_robots(model: Host, game: Game, seed: int) -> list[Krembot]:
     """Make the robots of all swarms, each with its policy and streams.
 
     Parameters
     ----------
-    model : World
-        Which they live in; its fleet has their rows.
+    model : Host
+        Which they live in; its states has their rows.
     game : Game
         What is played.
     seed : int
@@ -111,12 +111,12 @@ def make_robots(model: World, game: Game, seed: int) -> list[Krembot]:
     return robots
 
 
-def remove_robots(model: World, robots: Sequence[Krembot], absent: Sequence[int]) -> list[Krembot]:
+def remove_robots(model: Host, robots: Sequence[Krembot], absent: Sequence[int]) -> list[Krembot]:
     """Take robots out of a game, and return the others, whose rows close their ranks.
 
     Parameters
     ----------
-    model : World
+    model : Host
         Which they live in.
     robots : sequence of Krembot
         All that are there, by number; nobody may be absent yet.
@@ -127,7 +127,7 @@ def remove_robots(model: World, robots: Sequence[Krembot], absent: Sequence[int]
         robots[number].finish(int(model.env.now))
         robots[number].remove()
     rest = [robot for robot in robots if robot.number not in absent]
-    model.fleet.keep(np.array([robot.index for robot in rest]), model.space.agent_positions)
+    model.states.keep(np.array([robot.index for robot in rest]), model.space.agent_positions)
     for row, robot in enumerate(rest):
         robot.index = row
     return rest

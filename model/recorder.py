@@ -105,7 +105,7 @@ class Recorder:
         log, state = self._state.conflict_log, self._state
         if not log:
             return
-        seconds, robots = state.habits.seconds, state.robots
+        seconds, robots = state.controller.seconds, state.robots
         for c in log:
             robot, opponent = robots[c.robot], robots[c.opponent]
             seen: list[list[int]] = [[] for _ in state.members]
@@ -131,7 +131,7 @@ class Recorder:
         return tables
 
     def _robots(self) -> Table:
-        seconds = self._state.habits.seconds
+        seconds = self._state.controller.seconds
         rows = []
         for robot in self._state.robots:
             t_a, t_p = robot.times()
@@ -177,7 +177,7 @@ def result_rows(state: GameState) -> list[dict[str, Any]]:
 
 
 def _result_row(state: GameState, k: int, t_a: list[int], t_p: int) -> dict[str, Any]:
-    seconds, members = state.habits.seconds, state.members[k]
+    seconds, members = state.controller.seconds, state.members[k]
     conflicts = [sum(robot.conflicts[m] for robot in members) for m in range(len(t_a))]
     return {
         "swarm": k + 1,

@@ -74,7 +74,7 @@ def scene() -> Scene:
         model = GameModel(game, seed=seed, record=record)
         for robot, (x, y, heading) in zip(model.robots, [p for poses in swarms for p in poses], strict=True):
             robot.position = np.array([x, y])
-            row = model.fleet.robots[robot.index : robot.index + 1]
+            row = model.states.robots[robot.index : robot.index + 1]
             row["heading"], row["forward_x"], row["forward_y"] = heading, math.cos(heading), math.sin(heading)
         return model
 

@@ -1,1 +1,1 @@
-"""One robot: its body, senses, state, behaviour and the account of its time."""
+"""One robot: senses, state, behaviour and time accounting."""

@@ -1,4 +1,4 @@
-"""The record of a conflict."""
+"""Record of a conflict."""
 
 from typing import NamedTuple
 
@@ -6,10 +6,10 @@ from kswarms.agents.actions import Action
 
 
 class Conflict(NamedTuple):
-    """One interaction of a robot, from the start of its action to the start of the next; times in periods.
+    """One conflict of a robot, from the start of its action to the start of the next; times in periods.
 
-    Robots are rows of the fleet. `seen` is what `kswarms.agents.robot.sensing.read_robots` returns: how many
-    of each swarm it has is n_k and n_m of section 1.3.
+    Robots are rows of the state arrays. `seen` is the result of `sensed_robots`: its robots, by swarm, are n_k
+    and n_m of section 1.3.
     """
 
     robot: int

@@ -1,30 +1,30 @@
-"""Constants of the robots' controller."""
+"""Constants of the controller."""
 
 import math
 from typing import NamedTuple
 
 
-class Habits(NamedTuple):
-    """The constants of the controller; lengths in metres, angles in radians.
+class Controller(NamedTuple):
+    """Constants of a robot's controller; lengths in metres, angles in radians.
 
     Attributes
     ----------
     period : float
         Control period (s).
     turn_step : float
-        Most that a robot can turn in a period.
+        Maximum turn in a period.
     leg_mean : float
-        Mean wander leg (s).
+        Mean duration of a wander leg (s).
     wander_turn : float
-        The turn between two legs is uniform within ± this angle.
+        Turns between legs are uniform within ± this angle.
     half : float
         Half the side of the arena.
     wall_reach, wall_half_angle : float
-        As in `kswarms.agents.robot.sensing.walls_met`.
+        As in `walls_met`.
     radius, active_range : float
-        As in `kswarms.agents.robot.sensing.read_robots`.
+        As in `sensed_robots`.
     escape_away : bool
-        Whether a new heading only has to point away from the walls met.
+        Whether a turn at walls only needs to point away from the walls met.
     """
 
     period: float
@@ -39,10 +39,10 @@ class Habits(NamedTuple):
     escape_away: bool
 
     def periods(self, seconds: float) -> int:
-        """Return the whole periods that a duration takes, rounded up, at least one."""
-        # A billionth of a period forgives what a quotient like 0.3 / 0.1 is too large.
+        """Return a duration in periods, rounded up, at least 1."""
+        # Subtract 1e-9 to absorb rounding errors of a quotient such as 0.3 / 0.1.
         return max(1, math.ceil(seconds / self.period - 1e-9))
 
     def seconds(self, periods: int) -> float:
-        """Return how long some periods take (s), without the dust of binary fractions."""
+        """Return the duration of some periods (s), rounded to nanoseconds."""
         return round(periods * self.period, 9)

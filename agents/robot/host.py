@@ -1,4 +1,4 @@
-"""What a robot sees of the model that it lives in; `kswarms.model.game_model.GameModel` is one."""
+"""Interface of the model that a robot needs; `GameModel` implements it."""
 
 from collections.abc import Mapping
 from typing import Protocol
@@ -7,16 +7,16 @@ import simpy
 from mesa.experimental.continuous_space import ContinuousSpace
 
 from kswarms.agents.robot.conflict import Conflict
-from kswarms.agents.robot.controller import Habits
-from kswarms.agents.robot.state import Fleet
+from kswarms.agents.robot.controller import Controller
+from kswarms.agents.robot.state import RobotStates
 
 
-class World(Protocol):
-    """What a robot needs of the model it lives in."""
+class Host(Protocol):
+    """The model of a robot."""
 
     env: simpy.Environment
     space: ContinuousSpace
-    fleet: Fleet
-    habits: Habits
+    states: RobotStates
+    controller: Controller
     action_periods: Mapping[str, int]
     conflict_log: list[Conflict] | None

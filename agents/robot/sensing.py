@@ -1,7 +1,7 @@
-"""What a robot senses: the ring of eight proximity sensors and the walls (sections 2.2, 2.3).
+"""Sensing: the ring of eight proximity sensors and the walls (sections 2.2, 2.3).
 
-Compiled functions of plain numbers and arrays. The arena is the square |x|, |y| ≤ `half`;
-lengths in metres, angles in radians.
+Compiled functions of numbers and arrays. The arena is the square |x|, |y| ≤ `half`; lengths are in metres,
+angles in radians.
 """
 
 import math
@@ -36,7 +36,7 @@ ANGLES_OF: Final = [
 
 @compiled
 def wall_ray(x: float, y: float, dx: float, dy: float, half: float) -> float:
-    """Return the distance from (x, y) along the unit vector (dx, dy) to the wall it meets."""
+    """Return the distance from (x, y) to the walls along the unit vector (dx, dy)."""
     along_x = (half - x) / dx if dx > 0.0 else ((-half - x) / dx if dx < 0.0 else math.inf)
     along_y = (half - y) / dy if dy > 0.0 else ((-half - y) / dy if dy < 0.0 else math.inf)
     return min(along_x, along_y)
@@ -44,23 +44,23 @@ def wall_ray(x: float, y: float, dx: float, dy: float, half: float) -> float:
 
 @compiled
 def walls_met(x: float, y: float, heading: float, half: float, reach: float, half_angle: float) -> int:
-    """Return which walls the robot is about to run into.
+    """Return the walls ahead of a robot.
 
-    A wall counts if the robot heads towards it and one of the rays ahead (one, or three where
-    `half_angle` is not 0) meets it nearer than `reach`.
+    A wall counts if the robot heads towards it and a ray meets it within `reach`. There is one ray ahead, and
+    two more at its sides if `half_angle` is not 0.
 
     Parameters
     ----------
     x, y : float
         Centre of the robot.
     heading : float
-        Its direction.
+        Heading of the robot.
     half : float
         Half the side of the arena.
     reach : float
-        Distance from the centre within which a wall counts.
+        Length of the rays, from the centre.
     half_angle : float
-        Angle between the ray ahead and those at its sides, 0 for the ray ahead alone.
+        Angle between the ray ahead and the side rays, 0 for no side rays.
 
     Returns
     -------
@@ -88,7 +88,7 @@ def walls_met(x: float, y: float, heading: float, half: float, reach: float, hal
 
 @compiled
 def heads_for(heading: float, walls: int) -> bool:
-    """Return whether `heading` has a component towards any of `walls` (sum as in `walls_met`)."""
+    """Return whether `heading` has a component towards one of `walls` (a sum as in `walls_met`)."""
     for wall in range(4):
         if walls >> wall & 1 and math.cos(heading - _wall_direction(wall)) > 0.0:
             return True
@@ -113,31 +113,31 @@ def sense(
     limit: float,
     free: Floats,
 ) -> None:
-    """Measure the free distance of each of the eight sensors of a robot.
+    """Compute the free distance of each of the eight sensors of a robot.
 
-    The smaller of the wall along the middle of the sensor and the nearest surface of another robot
-    whose centre lies in its sector; both from the own surface.
+    This is the smaller of the distances to the wall along the middle of the sensor and to the nearest robot
+    whose centre is in its sector, both from the own surface.
 
     Parameters
     ----------
     robot : int
-        The robot that senses.
+        The sensing robot.
     forward_x, forward_y : float
         Unit vector of its heading.
     positions : ndarray of float64, shape (n, 2)
-        Of all robots.
+        Centres of all robots.
     others : ndarray of int64, shape (≥ n_others,)
-        Robots that may be in range; `robot` itself is passed over.
+        Robots that may be in range; `robot` itself is skipped.
     n_others : int
-        How many of them count.
+        Number of valid entries of `others`.
     radius : float
         Radius of every body.
     half : float
         Half the side of the arena.
     limit : float
-        Robots with a greater gap are passed over.
+        Robots with a larger gap are skipped.
     free : ndarray of float64, shape (8,)
-        Receives the distances, the sensor ahead first, then counter-clockwise.
+        Output: the distances, starting with the sensor ahead, counter-clockwise.
     """
     x = positions[robot, 0]
     y = positions[robot, 1]
@@ -160,10 +160,10 @@ def sense(
 
 @compiled
 def _sector(ahead: float, aside: float) -> int:
-    """Return the sensor in whose sector a direction lies.
+    """Return the sensor whose sector contains a direction.
 
-    Seen from the right edge of the sensor ahead, the sectors are the eight octants: comparisons tell them
-    apart in a fraction of the time of an arctangent.
+    Relative to the right edge of the sensor ahead, the sectors are octants. Comparisons are much faster than
+    an arctangent.
     """
     x = ahead * _HALF_COSINE - aside * _HALF_SINE
     y = aside * _HALF_COSINE + ahead * _HALF_SINE
@@ -176,7 +176,7 @@ def _sector(ahead: float, aside: float) -> int:
     return 6 if -y > x else 7
 
 
-def read_robots(
+def sensed_robots(
     robot: int,
     met: int,
     forward_x: float,
@@ -186,39 +186,33 @@ def read_robots(
     half: float,
     active_range: float,
 ) -> tuple[int, ...]:
-    """Tell which robot each of the eight sensors reads at the start of a conflict.
+    """Return the robot that each of the eight sensors reads at the start of a conflict.
 
-    An active sensor reads the nearest thing in its sector, as in `sense`: one robot, or a wall. The robot
-    met is what the sensor towards it reads in any case: it is the one that was noticed.
+    An active sensor reads the nearest robot or wall in its sector, as in `sense`. The sensor towards the
+    opponent always reads the opponent.
 
     Parameters
     ----------
     robot, met : int
-        The robot that senses, and the one that it meets.
-    forward_x, forward_y : float
-        Unit vector of its heading.
-    positions : ndarray of float64, shape (n, 2)
-        Of all robots.
-    radius : float
-        Radius of every body.
-    half : float
-        Half the side of the arena.
+        The sensing robot and its opponent.
+    forward_x, forward_y, positions, radius, half
+        As in `sense`.
     active_range : float
-        A sensor is active if what is nearest in its sector is not farther, from the own surface.
+        A sensor is active if the nearest surface in its sector is within this distance from the own surface.
 
     Returns
     -------
     tuple of int, length 8
-        Robots, −1 where a sensor reads none; the sensor ahead first, then counter-clockwise.
+        Robots, −1 for none, starting with the sensor ahead, counter-clockwise.
     """
     nearest = np.full(SENSORS, active_range)
     read = np.full(SENSORS, -1)
-    _read(robot, met, forward_x, forward_y, positions, radius, half, nearest, read)
+    _fill_sensors(robot, met, forward_x, forward_y, positions, radius, half, nearest, read)
     return tuple(read.tolist())
 
 
 @compiled
-def _read(
+def _fill_sensors(
     robot: int,
     met: int,
     forward_x: float,
@@ -229,7 +223,7 @@ def _read(
     nearest: Floats,
     read: Integers,
 ) -> None:
-    """Write what is read, and how near it is where it is nearer than `nearest` was."""
+    """Write the robot that each sensor reads, and lower `nearest` to its distance."""
     x = positions[robot, 0]
     y = positions[robot, 1]
     for sensor in range(SENSORS):

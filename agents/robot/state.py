@@ -1,7 +1,7 @@
-"""The arrays that the robots and the motion kernel share: one row for each robot.
+"""State arrays that robots and kernel share: one row for each robot.
 
-A robot writes its row when it decides; the kernel moves the bodies and reads what to watch for.
-Lengths are metres, angles radians in (−π, π], times control periods.
+A robot writes its row when it decides; the kernel moves the bodies and reads the phases. Lengths are metres,
+angles radians in (−π, π], times control periods.
 """
 
 from typing import Final, cast
@@ -15,55 +15,54 @@ ROBOT: Final = np.dtype(
         ("swarm", np.int64),  # swarm, counted from 0
         ("phase", np.int64),  # one of the constants below
         ("carrying", np.int64),  # 1 with a puck, 0 without
-        ("opponent", np.int64),  # robot met last, -1 before the first conflict
+        ("opponent", np.int64),  # opponent of the latest conflict, -1 before the first
         ("heading", np.float64),  # direction (rad)
         ("forward_x", np.float64),  # unit vector of the heading
         ("forward_y", np.float64),
-        ("stride", np.float64),  # what the wheels drive forward in a period (m), 0 in place
+        ("stride", np.float64),  # forward motion in a period (m), 0 while turning in place
         ("turn_rate", np.float64),  # change of heading in a period (rad), 0 while driving
     ]
 )
-"""One robot's row."""
+"""Row of a robot."""
 
-# What a robot is doing. All below ACTION belong to state P, ACTION is state A.
+# Phases. ACTION is state A, all others are state P.
 IDLE: Final = 0
-"""Nothing yet: asks for a decision at the next percepts."""
+"""Waiting for a decision at the next percepts."""
 LEG: Final = 1
 """Wandering straight ahead."""
 LEG_OVER: Final = 2
-"""The wander clock has run out: asks for a turn."""
+"""The leg is over: waiting for the decision to turn."""
 TURN: Final = 3
-"""Turning in place, for the wandering or for a wall."""
+"""Turning in place between legs or at a wall."""
 HOME_TURN: Final = 4
 """Turning in place towards the own base."""
 HOME: Final = 5
-"""Driving straight to the own base, carrying a puck."""
+"""Driving to the own base with a puck."""
 ACTION: Final = 6
-"""Resolving a conflict, turn included."""
-
+"""Resolving a conflict, including the turn."""
 
 HOMING_ERROR: Final = 0.05
-"""A robot on its way home turns where it is off by more than this angle (rad)."""
+"""A robot on its way home turns if its heading is off by more than this angle (rad)."""
 
 
-class Fleet:
-    """State of all robots.
+class RobotStates:
+    """States of all robots.
 
     Parameters
     ----------
     positions : ndarray of float64, shape (n, 2)
-        Centres (m); kept, not copied, so that it can be the array of Mesa's space.
+        Centres (m). The array is shared with Mesa's space, not copied.
     swarm : ndarray of int64, shape (n,)
-        Swarm of each robot, counted from 0.
+        Swarm of each robot, from 0.
     headings : ndarray of float64, shape (n,)
-        Directions at the start (rad).
+        Initial headings (rad).
 
     Attributes
     ----------
     robots : ndarray of `ROBOT`, shape (n,)
-        What the kernel is given.
+        The array for the kernel.
     swarm, phase, carrying, opponent, heading, stride, turn_rate : memoryview, shape (n,)
-        Its fields, as views: to read or write one number, twice as fast as an array.
+        Views of its fields; reading or writing one number is twice as fast as with arrays.
     """
 
     def __init__(self, positions: Floats, swarm: Integers, headings: Floats) -> None:
@@ -78,16 +77,16 @@ class Fleet:
         self._view()
 
     def keep(self, rows: Integers, positions: Floats) -> None:
-        """Let only some robots stay, and close their ranks.
+        """Keep only some robots.
 
         Parameters
         ----------
         rows : ndarray of int64, shape (m,)
-            Rows of those who stay, ascending; they are then rows 0 … m − 1, in the same memory.
+            Rows to keep, ascending. They become rows 0 … m − 1, in the same memory.
         positions : ndarray of float64, shape (m, 2)
-            Their centres (m); kept, not copied.
+            Centres of these robots (m). The array is not copied.
         """
-        new_row = np.full(len(self.robots) + 1, -1)  # its last entry is that of the opponent −1
+        new_row = np.full(len(self.robots) + 1, -1)  # the last entry is for opponent −1
         new_row[rows] = np.arange(len(rows))
         self.robots["opponent"] = new_row[self.robots["opponent"]]
         self.robots[: len(rows)] = self.robots[rows]

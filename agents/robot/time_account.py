@@ -1,4 +1,4 @@
-"""Account of a robot's time: T(a), T(p), and what each conflict was worth (section 1.5, Algorithm 1)."""
+"""Account of a robot's time: T(a), T(p) and the rewards of conflicts (section 1.5, Algorithm 1)."""
 
 import math
 from collections.abc import Callable
@@ -8,42 +8,41 @@ from mesa.experimental.continuous_space import ContinuousSpaceAgent
 
 from kswarms.agents.policies.interface import LearningPolicy, Policy
 from kswarms.agents.robot.conflict import Conflict
-from kswarms.agents.robot.host import World
+from kswarms.agents.robot.host import Host
 from kswarms.agents.robot.state import ACTION
 
 
 class TimedAgent(ContinuousSpaceAgent):
-    """An agent in continuous space that is in action or in program, and learns from how long it was.
+    """An agent in continuous space that measures its times of action and program, and learns from them.
 
     Parameters
     ----------
-    model : World
-        The Mesa model that it lives in.
+    model : Host
+        The model.
     index : int
-        Its row in the fleet.
+        Row in the state arrays.
     policy : Policy
-        If it has a method ``learn``, it is told how each conflict ended.
+        The policy. Its method ``learn``, if there is one, is called at the end of each conflict.
     swarms : int
         Number of swarms in the game.
 
     Attributes
     ----------
     t_a : list of int, length `swarms`
-        Periods of action, by the opponent's swarm; of actions that have ended.
+        Periods of completed actions, by the opponent's swarm.
     t_p : int
-        Periods of program; of those that have ended.
+        Periods of completed program.
     conflicts : list of int, length `swarms`
-        Conflicts begun, by the opponent's swarm.
+        Number of conflicts begun, by the opponent's swarm.
     """
 
-    # Slots, here and in `Krembot`: every conflict reads and writes many of them, and beyond thirty attributes
-    # a dict no longer finds them at once.
+    # Slots, here and in `Krembot`, are faster than a dict of more than thirty attributes.
     __slots__ = (
-        *("index", "policy", "t_a", "t_p", "conflicts", "_env", "_phase", "_period", "_learn", "_log"),
-        *("_since", "_is_open", "_is_over", "_active", "_opponent_swarm", "_open", "_open_t_a"),
+        "_active", "_env", "_is_open", "_is_over", "_learn", "_log", "_open", "_open_t_a",
+        "_opponent_swarm", "_period", "_phase", "_since", "conflicts", "index", "policy", "t_a", "t_p",
     )
 
-    def __init__(self, model: World, index: int, policy: Policy, swarms: int) -> None:
+    def __init__(self, model: Host, index: int, policy: Policy, swarms: int) -> None:
         super().__init__(model.space, cast(Any, model))
         self.index = index
         self.policy = policy
@@ -51,28 +50,28 @@ class TimedAgent(ContinuousSpaceAgent):
         self.t_p = 0
         self.conflicts = [0] * swarms
         self._env = model.env
-        self._phase = model.fleet.phase
-        self._period = model.habits.period
+        self._phase = model.states.phase
+        self._period = model.controller.period
         self._learn: Callable[[float, float, int], tuple[float, float]] | None
         self._learn = getattr(policy, "learn", None)
         self._log = model.conflict_log
         self._since = int(model.env.now)
-        """When the current action or program began."""
+        """Start of the current action or program (periods)."""
         self._is_open = False
-        """Whether a conflict waits to be closed."""
+        """Whether a conflict is open."""
         self._is_over = False
-        """Whether its game has ended."""
+        """Whether the game has ended."""
         self._active = 0
-        """Sensors that were active when it began."""
+        """Number of active sensors at the start of the open conflict."""
         self._opponent_swarm = -1
-        """Swarm of the robot met last."""
+        """Swarm of the opponent of the latest conflict."""
         self._open: tuple[Any, ...] = ()
         """First fields of the open `Conflict`, if conflicts are logged."""
         self._open_t_a = 0
 
     @property
     def state(self) -> str:
-        """``A`` while it resolves a conflict, else ``P``."""
+        """``A`` while resolving a conflict, else ``P``."""
         return "A" if self._phase[self.index] == ACTION else "P"
 
     def times(self) -> tuple[list[int], int]:
@@ -86,18 +85,18 @@ class TimedAgent(ContinuousSpaceAgent):
         return t_a, t_p
 
     def close(self, now: int, learn: bool = True) -> None:
-        """Count the time up to `now` (periods) and end the open conflict.
+        """Count the time up to `now` and close the open conflict.
 
         Parameters
         ----------
         now : int
             The time (periods).
         learn : bool
-            Whether the policy is told; not where the end is not the next conflict, but that of the phase.
+            Whether the policy learns from the conflict. False where the end of a phase cuts it off.
         """
         elapsed = now - self._since
         self._since = now
-        if self._phase[self.index] == ACTION:  # overtaken: no program time
+        if self._phase[self.index] == ACTION:  # interrupted action: no program time
             self.t_a[self._opponent_swarm] += elapsed
             self._open_t_a = elapsed
             elapsed = 0
@@ -108,7 +107,7 @@ class TimedAgent(ContinuousSpaceAgent):
                 self._settle(elapsed, learn)
 
     def _settle(self, t_p: int, learn: bool) -> None:
-        """Reward the conflict that ends with T(p) = `t_p` (periods), and log it."""
+        """Reward and log the conflict that ends with T(p) = `t_p` (periods)."""
         reward = value = math.nan
         if learn and self._learn is not None:
             period = self._period
@@ -117,7 +116,7 @@ class TimedAgent(ContinuousSpaceAgent):
             self._log.append(Conflict._make((*self._open, self._open_t_a, t_p, reward, value)))
 
     def restart(self, now: int) -> None:
-        """Count times and conflicts from 0; nothing more is learned."""
+        """Reset times and conflicts to 0 and stop learning."""
         self.close(now, learn=False)
         self.t_a = [0] * len(self.t_a)
         self.t_p = 0
@@ -127,20 +126,20 @@ class TimedAgent(ContinuousSpaceAgent):
             cast(LearningPolicy, self.policy).freeze()
 
     def finish(self, now: int) -> None:
-        """Count no more."""
+        """End the game: close the open conflict and stop counting."""
         self.close(now, learn=False)
         self._is_over = True
 
-    def _begin(self, swarm: int, active: int, about: tuple[Any, ...]) -> None:
-        """Open a conflict with a robot of `swarm`; `about` it is what the log is told."""
+    def _begin(self, swarm: int, active: int, fields: tuple[Any, ...]) -> None:
+        """Open a conflict with a robot of `swarm`; `fields` are the first fields of its record."""
         self._opponent_swarm = swarm
         self._is_open = True
         self._active = active
-        self._open = about
+        self._open = fields
         self.conflicts[swarm] += 1
 
     def _end_action(self) -> None:
-        """Count the action that ends now; what follows is program."""
+        """Count the action that ends now; program follows."""
         now: int = self._env.now  # type: ignore[assignment]  # whole periods; `cast` would cost a call
         elapsed = self._open_t_a = now - self._since
         self.t_a[self._opponent_swarm] += elapsed

@@ -47,7 +47,7 @@ def draw_arena(model, axes):
         axes.add_patch(plt.Circle((x, y), parameters.base_radius, color=colour, alpha=0.3))
     for robot in model.robots:
         x, y = robot.position
-        row = model.fleet.robots[robot.index]
+        row = model.states.robots[robot.index]
         radius = model.game.body.radius
         axes.add_patch(plt.Circle((x, y), radius, color=COLOURS[robot.swarm], alpha=0.9))
         axes.plot([x, x + radius * row["forward_x"]], [y, y + radius * row["forward_y"]], color="white")

@@ -9,7 +9,7 @@ import numpy as np
 
 from kswarms.agents.common.arrays import Floats
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.streams import WORLD, Purpose, stream
+from kswarms.agents.streams import ENVIRONMENT, Purpose, stream
 
 # Positions of the layouts in an arena of 2 m × 2 m.
 _SIDE: Final = 2.0
@@ -137,7 +137,7 @@ def _random_stations(
     seed: int, bases: Floats, half: float, station_radius: float, base_radius: float
 ) -> Floats:
     """Draw two stations that overlap neither bases, walls nor each other."""
-    draws = stream(seed, WORLD, Purpose.STATIONS)
+    draws = stream(seed, ENVIRONMENT, Purpose.STATIONS)
     limit = max(0.0, half - station_radius)
     stations: list[Floats] = []
     for _ in range(100_000):

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from kswarms.agents.common.arrays import Integers, Records
-from kswarms.agents.robot.state import Fleet
+from kswarms.agents.robot.state import RobotStates
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game
 from kswarms.model.kernel.advance import advance
@@ -29,7 +29,7 @@ class Kernel:
         What is played.
     arena : Arena
         Where.
-    fleet : Fleet
+    states : RobotStates
         The robots; written.
 
     Attributes
@@ -45,8 +45,8 @@ class Kernel:
         most to the start of `until`; returns the period reached, and the number of `events` there.
     """
 
-    def __init__(self, game: Game, arena: Arena, fleet: Fleet) -> None:
-        n = len(fleet.positions)
+    def __init__(self, game: Game, arena: Arena, states: RobotStates) -> None:
+        n = len(states.positions)
         self.events: Records = np.zeros(n, dtype=EVENT)
         self.fields = [self.events[name].data for name in EVENT.names or ()]
         stations: Records = np.zeros(len(arena.stations), dtype=STATION)
@@ -59,8 +59,8 @@ class Kernel:
         work: Records = np.zeros(n, dtype=WORK)
         work["origin_x"] = np.nan  # no neighbours listed yet
         arguments = (
-            fleet.positions,
-            fleet.robots,
+            states.positions,
+            states.robots,
             world,
             stations,
             arena.bases,

@@ -120,7 +120,7 @@ class Player:
         self.model = GameModel(game, seed=self.seed, record="conflicts")
         self._reader = ConflictReader(self.model)
         self.conflicts: deque[WatchedConflict] = deque(maxlen=MOST_CONFLICTS)
-        self._interval = self.model.habits.periods(FIRST_INTERVAL)
+        self._interval = self.model.controller.periods(FIRST_INTERVAL)
         self._steps = 0
         self._history = [self._sample()]
 
@@ -139,8 +139,8 @@ class Player:
     @property
     def begin(self) -> float:
         """Length of the learning phase, after which the measured game begins (s)."""
-        habits = self.model.habits
-        return habits.seconds(habits.periods(self.game.learning)) if self.game.learning > 0 else 0.0
+        controller = self.model.controller
+        return controller.seconds(controller.periods(self.game.learning)) if self.game.learning > 0 else 0.0
 
     @property
     def ended(self) -> str:
@@ -150,12 +150,12 @@ class Player:
     def snapshot(self) -> Snapshot:
         """Return the current state."""
         with self._lock:
-            fleet = self.model.fleet
-            robots = fleet.robots
+            states = self.model.states
+            robots = states.robots
             return Snapshot(
                 self.time,
                 tuple(robot.number for robot in self.model.robots),
-                fleet.positions.copy(),
+                states.positions.copy(),
                 robots["heading"].copy(),
                 robots["swarm"].copy(),
                 robots["phase"] == ACTION,

@@ -104,16 +104,16 @@ def view_robot(model: GameModel, number: int) -> RobotView | None:
     if index is None:
         return None
     robot = model.robots[index]
-    seconds = model.habits.seconds
+    seconds = model.controller.seconds
     t_a, t_p = robot.times()
-    met = model.fleet.opponent[index]
+    met = model.states.opponent[index]
     learner = robot.policy if isinstance(robot.policy, Learner) else None
     return RobotView(
         number,
         robot.swarm + 1,
         robot.policy_name,
-        _DOING[model.fleet.phase[index]],
-        f"robot {model.robots[met].number} of S{model.fleet.swarm[met] + 1}" if met >= 0 else "",
+        _DOING[model.states.phase[index]],
+        f"robot {model.robots[met].number} of S{model.states.swarm[met] + 1}" if met >= 0 else "",
         robot.carrying,
         robot.pucks,
         tuple(seconds(periods) for periods in t_a),
@@ -129,14 +129,14 @@ def view_robot(model: GameModel, number: int) -> RobotView | None:
 def _read_sensors(model: GameModel, index: int) -> tuple[Sensor, ...]:
     body, parameters = model.game.body, model.game.parameters
     reach = body.sensor_range
-    row = model.fleet.robots[index]
+    row = model.states.robots[index]
     free = np.empty(SENSORS)
     others = np.arange(len(model.robots))
     sense(
         index,
         row["forward_x"],
         row["forward_y"],
-        model.fleet.positions,
+        model.states.positions,
         others,
         len(others),
         body.radius,

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kswarms.agents.body import KREMBOT
-from kswarms.agents.robot.state import Fleet
+from kswarms.agents.robot.state import RobotStates
 from kswarms.agents.streams import Purpose
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.description.parameters import PRESETS
@@ -155,8 +155,8 @@ def test_mesa_knows_who_is_there() -> None:
     model.env.run(until=350)
     for row, robot in enumerate(model.robots):
         assert robot.index == row
-        assert (robot.position == model.fleet.positions[row]).all()
-        assert np.shares_memory(robot.position, model.fleet.positions)
+        assert (robot.position == model.states.positions[row]).all()
+        assert np.shares_memory(robot.position, model.states.positions)
         near, _ = robot.get_neighbors_in_radius(0.5)
         distances = {other: math.dist(robot.position, other.position) for other in model.robots}
         assert {*near} == {other for other, d in distances.items() if d <= 0.5 and other is not robot}
@@ -170,7 +170,7 @@ def test_a_robot_blocked_by_another_drives_on_when_it_is_gone() -> None:
         model = GameModel(what, record="conflicts")
         for robot, (x, heading) in zip(model.robots, ((-0.2, 0.0), (0.2, math.pi)), strict=True):
             robot.position = np.array([x, 0.3])
-            row = model.fleet.robots[robot.index : robot.index + 1]
+            row = model.states.robots[robot.index : robot.index + 1]
             row["heading"], row["forward_x"], row["forward_y"] = heading, math.cos(heading), 0.0
         model.env.run(until=50)
         before = model.robots[0].position[0]
@@ -249,15 +249,15 @@ def test_same_seed_same_bytes(since: str) -> None:
 
 
 def test_closing_ranks_keeps_whom_a_robot_has_met() -> None:
-    fleet = Fleet(np.zeros((5, 2)), np.array([0, 0, 1, 1, 1]), np.arange(5.0))
-    fleet.robots["opponent"] = [-1, 4, 1, 0, 3]
-    memory = fleet.robots
-    fleet.keep(np.array([0, 2, 4]), np.zeros((3, 2)))
-    assert fleet.robots["opponent"].tolist() == [-1, -1, -1]
-    assert fleet.heading.tolist() == [0.0, 2.0, 4.0]
-    assert fleet.swarm.tolist() == [0, 1, 1]
-    assert np.shares_memory(fleet.robots, memory)
+    states = RobotStates(np.zeros((5, 2)), np.array([0, 0, 1, 1, 1]), np.arange(5.0))
+    states.robots["opponent"] = [-1, 4, 1, 0, 3]
+    memory = states.robots
+    states.keep(np.array([0, 2, 4]), np.zeros((3, 2)))
+    assert states.robots["opponent"].tolist() == [-1, -1, -1]
+    assert states.heading.tolist() == [0.0, 2.0, 4.0]
+    assert states.swarm.tolist() == [0, 1, 1]
+    assert np.shares_memory(states.robots, memory)
 
-    fleet.robots["opponent"] = [2, 0, 1]
-    fleet.keep(np.array([1, 2]), np.zeros((2, 2)))
-    assert fleet.opponent.tolist() == [-1, 0]
+    states.robots["opponent"] = [2, 0, 1]
+    states.keep(np.array([1, 2]), np.zeros((2, 2)))
+    assert states.opponent.tolist() == [-1, 0]

@@ -50,7 +50,7 @@ class Trace:
         def counted(robot: Krembot, *arguments: Any) -> None:
             decide(robot, *arguments)
             kind = "leg" if name == "begin_leg" else "turn"
-            self.decided[kind] += kind == "leg" or self.model.fleet.turn_rate[robot.index] != 0
+            self.decided[kind] += kind == "leg" or self.model.states.turn_rate[robot.index] != 0
 
         monkeypatch.setattr(Krembot, name, counted)
 

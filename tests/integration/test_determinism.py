@@ -80,8 +80,8 @@ def test_looking_does_not_change_the_game(name: str, record: str, sample_period:
     plain.env.run()
     watched.play()
     assert watched.results() == plain.results()
-    assert watched.fleet.positions.tobytes() == plain.fleet.positions.tobytes()
-    assert watched.fleet.robots.tobytes() == plain.fleet.robots.tobytes()
+    assert watched.states.positions.tobytes() == plain.states.positions.tobytes()
+    assert watched.states.robots.tobytes() == plain.states.robots.tobytes()
 
 
 @pytest.mark.parametrize("name", GAMES)
@@ -92,7 +92,7 @@ def test_other_seeds_give_other_games(name: str) -> None:
 def start(**arguments: object) -> tuple[np.ndarray, ForagingModel]:
     """Return the poses at the start of a game, and the game."""
     model = ForagingModel(**{"n": 12, "seed": 4, **arguments})  # type: ignore[arg-type]
-    return np.column_stack([model.fleet.positions, model.fleet.robots["heading"]]), model
+    return np.column_stack([model.states.positions, model.states.robots["heading"]]), model
 
 
 @pytest.mark.parametrize(

@@ -53,7 +53,7 @@ def at_the_switch(what: Game, seed: int = 0, record: str = "conflicts,robots") -
 def world(model: GameModel) -> bytes:
     """Return all that the world is made of: bodies, what they do, pucks they carry, supplies."""
     positions = model.space.agent_positions.tobytes()
-    return positions + model.fleet.robots.tobytes() + json.dumps(model.supply).encode()
+    return positions + model.states.robots.tobytes() + json.dumps(model.supply).encode()
 
 
 def rows_of(model: GameModel, phase: str) -> list[Row]:
@@ -88,8 +88,8 @@ def test_the_switch_changes_nothing_in_the_world(policies: str, preempt: bool) -
     whole.step()
     assert world(phased) == world(whole)
     # Something is under way that a new start would interrupt.
-    assert ACTION in phased.fleet.phase.tolist()
-    assert phased.carried_at_start == sum(phased.fleet.carrying.tolist()) > 0
+    assert ACTION in phased.states.phase.tolist()
+    assert phased.carried_at_start == sum(phased.states.carrying.tolist()) > 0
     assert 0 < sum(phased.supply) < 18
     before = (whole.pucks.copy(), whole.picked_up)
     for model in (phased, whole):

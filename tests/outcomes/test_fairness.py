@@ -187,14 +187,14 @@ def exchange_draws(model: GameModel, exchange: Exchange, monkeypatch: pytest.Mon
 
 def put_twins(model: GameModel, original: GameModel, exchange: Exchange) -> None:
     """Put every robot where its twin stands, seen in the mirror."""
-    fleet, source = model.fleet, original.fleet
+    states, source = model.states, original.states
     for robot in range(model.game.size):
         twin = exchange.twins(robot, model.game.size)
-        fleet.positions[robot] = source.positions[twin] * exchange.signs
+        states.positions[robot] = source.positions[twin] * exchange.signs
         heading = exchange.heading(source.heading[twin])
-        fleet.robots["heading"][robot] = heading
-        fleet.robots["forward_x"][robot] = math.cos(heading)
-        fleet.robots["forward_y"][robot] = math.sin(heading)
+        states.robots["heading"][robot] = heading
+        states.robots["forward_x"][robot] = math.cos(heading)
+        states.robots["forward_y"][robot] = math.sin(heading)
 
 
 def reverse_within_swarms(robot: int, n: int) -> int:
@@ -227,25 +227,24 @@ def play_exchanged(game: Game, seed: int, exchange: Exchange) -> float:
     path = []
     while not model.ended:
         model.step()
-        robots = model.fleet.robots[twins]
+        robots = model.states.robots[twins]
         turns = -robots["turn_rate"] if exchange.turns_over else robots["turn_rate"]
-        path.append((model.fleet.positions[twins] * exchange.signs, image_of[robots["opponent"]], turns))
+        path.append((model.states.positions[twins] * exchange.signs, image_of[robots["opponent"]], turns))
     apart, tied = 0.0, False
     with pytest.MonkeyPatch.context() as monkeypatch:
         exchange_draws(image, exchange, monkeypatch)
         for positions, met, turns in path:
-            before = image.fleet.positions.copy()
+            before = image.states.positions.copy()
             image.step()
-            apart = max(apart, float(np.abs(image.fleet.positions - positions).max()))
-            opposite = abs(turns + image.fleet.robots["turn_rate"]) < 1e-12
+            apart = max(apart, float(np.abs(image.states.positions - positions).max()))
+            opposite = abs(turns + image.states.robots["turn_rate"]) < 1e-12
             for turn in turns[opposite & (turns != 0)]:
                 # Whoever drives home, flees straight back and turns home again turns by exactly half a turn.
                 tied |= apart < 1e-6 and abs(math.remainder(math.pi, turn)) < 1e-9
-            for robot in np.flatnonzero(image.fleet.robots["opponent"] != met):
+            for robot in np.flatnonzero(image.states.robots["opponent"] != met):
                 if apart < 1e-6 and not tied:
-                    distances = [
-                        math.dist(before[robot], before[k]) for k in (image.fleet.opponent[robot], met[robot])
-                    ]
+                    opponents = (image.states.opponent[robot], met[robot])
+                    distances = [math.dist(before[robot], before[k]) for k in opponents]
                     assert distances[0] == pytest.approx(distances[1], rel=0, abs=1e-12)
                     tied = True
     if apart < 1e-6 and tied:

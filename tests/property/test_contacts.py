@@ -36,11 +36,11 @@ def game_of(n: int, friction: float = 0.18, push_share: float = 0.0) -> Game:
 
 def drive(scene: Scene, periods: int = 1) -> Floats:
     """Move the robots of a scene, none of which decides anything; return by how much each was displaced."""
-    before = scene.fleet.positions.copy()
+    before = scene.states.positions.copy()
     advance, tick = scene.kernel().advance, 0
     while tick < periods:
         tick, _ = advance(tick, periods)
-    return scene.fleet.positions - before
+    return scene.states.positions - before
 
 
 def play_period(scene: Scene) -> dict[tuple[int, int], tuple[int, int, int, float]]:
@@ -64,7 +64,7 @@ def crowded(scene: Scene) -> Scene:
     """
     for _ in range(2):
         play_period(scene)
-    scene.fleet.robots["phase"] = ACTION
+    scene.states.robots["phase"] = ACTION
     return replace(scene, game=scene.game.replace(parameters=scene.game.parameters.replace(preempt=False)))
 
 
@@ -82,11 +82,11 @@ def assert_apart(positions: Floats, radius: float, half: float) -> None:
 @settings(deadline=None, max_examples=150)
 @given(scenes())
 def test_bodies_stay_apart_and_inside(scene: Scene) -> None:
-    scene.fleet.robots["phase"] = ACTION
-    scene.fleet.robots["carrying"] = 0
+    scene.states.robots["phase"] = ACTION
+    scene.states.robots["carrying"] = 0
     for _ in range(10):
         drive(scene)
-        assert_apart(scene.fleet.positions, scene.game.body.radius, scene.arena.half)
+        assert_apart(scene.states.positions, scene.game.body.radius, scene.arena.half)
 
 
 @settings(deadline=None, max_examples=300)
@@ -95,7 +95,7 @@ def test_the_outcome_does_not_hang_on_the_last_bit(scene: Scene, seed: int) -> N
     # Bodies that were stopped, or parted, just touch: whether they overlap by 1e-17 m must not matter.
     scene = crowded(scene)
     other = clone(scene)
-    other.fleet.positions += np.random.default_rng(seed).uniform(-1e-13, 1e-13, other.fleet.positions.shape)
+    other.states.positions += np.random.default_rng(seed).uniform(-1e-13, 1e-13, other.states.positions.shape)
     np.testing.assert_allclose(drive(other), drive(scene), rtol=0, atol=1e-9)
 
 
@@ -222,8 +222,8 @@ def test_a_straight_row_from_wall_to_wall_gives_way(turn: float, across: float) 
     positions = np.column_stack((along, np.full(12, across))) @ turned
     scene = make_scene(game_of(12), positions, np.full(12, turn), STRIDE * (np.arange(12) == 3))
     drive(scene)
-    assert pdist(scene.fleet.positions).min() > 2 * R - LARGEST_OVERLAP
-    assert np.abs(scene.fleet.positions).max() <= 1 - R + EXACT
+    assert pdist(scene.states.positions).min() > 2 * R - LARGEST_OVERLAP
+    assert np.abs(scene.states.positions).max() <= 1 - R + EXACT
 
 
 def test_what_cannot_be_parted_is_told() -> None:
@@ -270,14 +270,14 @@ def assert_permuted(scene: Scene, image: Scene, order: Integers) -> None:
     assert {(order[robot], kind) for robot, kind in image_told} == set(told)
     for (robot, kind), (other, *rest) in image_told.items():
         assert (order[other] if kind == CONFLICT else other, *rest) == told[order[robot], kind]
-    np.testing.assert_allclose(image.fleet.positions, scene.fleet.positions[order], rtol=0, atol=1e-9)
-    assert (image.fleet.robots["heading"] == scene.fleet.robots["heading"][order]).all()
+    np.testing.assert_allclose(image.states.positions, scene.states.positions[order], rtol=0, atol=1e-9)
+    assert (image.states.robots["heading"] == scene.states.robots["heading"][order]).all()
 
 
 @settings(deadline=None, max_examples=300)
 @given(scenes(), st.integers(0, 2**32 - 1))
 def test_no_number_is_favoured(scene: Scene, seed: int) -> None:
-    order = np.random.default_rng(seed).permutation(len(scene.fleet.positions))
+    order = np.random.default_rng(seed).permutation(len(scene.states.positions))
     for state in (clone(scene), crowded(scene)):
         for numbers in (order, np.sort(order)[::-1]):
             assert_permuted(clone(state), clone(state, numbers), numbers)
@@ -291,8 +291,8 @@ def assert_mirrored(scene: Scene, image: Scene) -> None:
         sensors = sum(1 << (-s % SENSORS) for s in range(SENSORS) if vacant >> s & 1)
         assert (other, active, sensors) == told[key][:3]
         assert math.remainder(angle + told[key][3], 2 * math.pi) == pytest.approx(0, abs=1e-9)
-    np.testing.assert_allclose(image.fleet.positions, scene.fleet.positions * (-1, 1), rtol=0, atol=1e-9)
-    turned = image.fleet.robots["heading"] + scene.fleet.robots["heading"] - math.pi
+    np.testing.assert_allclose(image.states.positions, scene.states.positions * (-1, 1), rtol=0, atol=1e-9)
+    turned = image.states.robots["heading"] + scene.states.robots["heading"] - math.pi
     np.testing.assert_allclose(np.sin(turned / 2), 0, atol=1e-9)
 
 
@@ -312,7 +312,7 @@ def test_a_favoured_number_is_found() -> None:
     order = np.array((1, 0))
     assert_permuted(touching(), clone(touching(), order), order)
     favoured = clone(touching(), order)
-    favoured.fleet.robots["stride"][1] *= 1.001
+    favoured.states.robots["stride"][1] *= 1.001
     with pytest.raises(AssertionError):
         assert_permuted(touching(), favoured, order)
 
@@ -320,6 +320,6 @@ def test_a_favoured_number_is_found() -> None:
 def test_a_bent_mirror_is_found() -> None:
     assert_mirrored(touching(), mirrored(touching()))
     bent = mirrored(touching())
-    bent.fleet.robots["stride"][0] *= 1.001
+    bent.states.robots["stride"][0] *= 1.001
     with pytest.raises(AssertionError):
         assert_mirrored(touching(), bent)

@@ -78,11 +78,11 @@ def every_period(model: GameModel) -> Iterator[None]:
 
 def check_bodies(model: GameModel, before: np.ndarray[Any, Any]) -> None:
     """Check that nobody overlaps, is outside, or was moved much farther than robots drive."""
-    positions, body = model.fleet.positions, model.game.body
+    positions, body = model.states.positions, model.game.body
     if len(positions) > 1:
         assert pdist(positions).min() > 2 * body.radius - 1e-4
     assert np.abs(positions).max() <= model.arena.half - body.radius + ROUNDING
-    assert np.abs(model.fleet.robots["heading"]).max() <= np.pi + ROUNDING
+    assert np.abs(model.states.robots["heading"]).max() <= np.pi + ROUNDING
     # Drive, shoves, and a wedge that gives way; a body that is flung farther passes through others.
     drive = max(max(swarm.drive, swarm.drive_action) for swarm in model.game.swarms)
     stride = drive * body.top_speed * model.game.parameters.period
@@ -141,11 +141,11 @@ def check_results(model: GameModel) -> None:
 )
 def test_bodies_times_and_pucks_in_every_period(game: Game, seed: int) -> None:
     model = GameModel(game.replace(sample_period=game.parameters.period), seed)
-    before = model.fleet.positions.copy()
+    before = model.states.positions.copy()
     for _ in every_period(model):
         check_bodies(model, before)
         check_books(model)
-        before = model.fleet.positions.copy()
+        before = model.states.positions.copy()
     check_results(model)
     event(f"ended: {model.ended}")
     event(f"supply: {'none' if game.supply is None else 'used up' if not any(model.supply) else 'left'}")
@@ -178,9 +178,9 @@ def longest_stay(model: GameModel, seconds: float, fights_count: bool) -> float:
     Unless `fights_count`, a time ends where the robot fights or is fought: what holds it then is not a wedge
     but another robot that drives against it, as long as both like.
     """
-    positions, period = model.fleet.positions, model.game.parameters.period
-    phase, opponent = model.fleet.robots["phase"], model.fleet.robots["opponent"]
-    swarm, everyone = model.fleet.robots["swarm"], range(len(model.robots))
+    positions, period = model.states.positions, model.game.parameters.period
+    phase, opponent = model.states.robots["phase"], model.states.robots["opponent"]
+    swarm, everyone = model.states.robots["swarm"], range(len(model.robots))
     fighter = np.array(
         [[robot.policy.choose(k).direction == TOWARDS for k in (0, 1)] for robot in model.robots]
     )
@@ -239,8 +239,8 @@ def test_what_holds_fighters_is_the_fight(policies: str, preempt: bool) -> None:
 def test_bodies_in_long_jams(policies: str) -> None:
     for seed, n in enumerate((50, 70, 80)):
         model = GameModel(dense_game(f"{policies},{policies}", n), seed)
-        before = model.fleet.positions.copy()
+        before = model.states.positions.copy()
         for tick in range(1, 1001):
             model.env.run(until=tick)
             check_bodies(model, before)
-            before = model.fleet.positions.copy()
+            before = model.states.positions.copy()

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 
 from kswarms.agents.common.arrays import Records
-from kswarms.agents.robot.state import IDLE, Fleet
+from kswarms.agents.robot.state import IDLE, RobotStates
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.description.parameters import PRESETS, Parameters
 from kswarms.model.game_model import GameModel
@@ -26,7 +26,7 @@ ARGOS, FITTED = PRESETS["argos"], PRESETS["fitted"]
 @given(scenes())
 def test_a_period_equals_the_reference(scene: Scene) -> None:
     kernel = scene.kernel()
-    advance = compared(kernel, ReferenceKernel(scene.game, scene.arena), scene.fleet, [])
+    advance = compared(kernel, ReferenceKernel(scene.game, scene.arena), scene.states, [])
     for tick in range(3):
         while advance(tick, tick + 1)[1]:
             pass  # nobody decides: the next stage of the same period follows
@@ -35,9 +35,9 @@ def test_a_period_equals_the_reference(scene: Scene) -> None:
 def test_percepts_follow_pick_ups_even_when_time_stands_still() -> None:
     game = make_game("avoid", 1, FITTED, "krembot-sim", 10)
     scene = make_scene(game, game.arena(0).stations[:1], [0.0], 0.015)
-    scene.fleet.robots["phase"] = IDLE
+    scene.states.robots["phase"] = IDLE
     kernel, calls = scene.kernel(), list[int]()
-    advance = compared(kernel, ReferenceKernel(game, scene.arena), scene.fleet, calls)
+    advance = compared(kernel, ReferenceKernel(game, scene.arena), scene.states, calls)
     told = [(advance(0, until)[1], int(kernel.events["kind"][0])) for until in (0, 1, 0)]
     assert told == [(0, 0), (1, PICK_UP), (1, LEG_DUE)]
     assert advance(0, 0) == (0, 0)
@@ -54,7 +54,7 @@ def play_compared(game: Game, seed: int, spoil_skin: float | None = None) -> tup
         assert isinstance(kernel.advance, partial)
         world = next(array for array in kernel.advance.args if array.dtype == WORLD)
         world["skin"] = spoil_skin
-    kernel.advance = compared(kernel, ReferenceKernel(game, model.arena), model.fleet, calls)
+    kernel.advance = compared(kernel, ReferenceKernel(game, model.arena), model.states, calls)
     model.play()
     return model, calls
 
@@ -104,7 +104,7 @@ def test_a_rule_that_differs_is_found(change: dict[str, float]) -> None:
     other = game.replace(parameters=game.parameters.replace(**change))
     model = GameModel(game, seed=1)
     reference = ReferenceKernel(other, model.arena)
-    model._kernel.advance = compared(model._kernel, reference, model.fleet, [])
+    model._kernel.advance = compared(model._kernel, reference, model.states, [])
     with pytest.raises(AssertionError):
         model.play()
 
@@ -158,10 +158,10 @@ def test_an_event_too_many_is_found() -> None:
 
 @pytest.mark.parametrize("field", ["positions", "heading", "forward_x", "forward_y"])
 def test_a_state_that_differs_is_found(field: str) -> None:
-    fleet = Fleet(np.zeros((2, 2)), np.zeros(2, dtype=np.int64), np.zeros(2))
-    state = State.of(fleet)
-    assert_same_state(fleet, state)
-    changed = fleet.positions if field == "positions" else fleet.robots[field]
+    states = RobotStates(np.zeros((2, 2)), np.zeros(2, dtype=np.int64), np.zeros(2))
+    state = State.of(states)
+    assert_same_state(states, state)
+    changed = states.positions if field == "positions" else states.robots[field]
     changed[1] += 1e-8
     with pytest.raises(AssertionError):
-        assert_same_state(fleet, state)
+        assert_same_state(states, state)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from kswarms.agents.common.arrays import Records
-from kswarms.agents.robot.state import Fleet
+from kswarms.agents.robot.state import RobotStates
 from kswarms.model.kernel.kernel import Kernel
 from kswarms.model.kernel.percepts import CONFLICT, HOMING, PICK_UP
 from tests.reference.kernel import Event, ReferenceKernel, State
@@ -35,17 +35,17 @@ def _same_angle(angle: float, other: float) -> bool:
     return abs(math.remainder(angle - other, 2 * math.pi)) < PRECISION
 
 
-def assert_same_state(fleet: Fleet, expected: State) -> None:
+def assert_same_state(states: RobotStates, expected: State) -> None:
     """Compare positions and headings, and that the stored direction is the heading's."""
-    np.testing.assert_allclose(fleet.positions, expected.positions, rtol=0, atol=PRECISION)
-    robots = fleet.robots
+    np.testing.assert_allclose(states.positions, expected.positions, rtol=0, atol=PRECISION)
+    robots = states.robots
     np.testing.assert_allclose(robots["heading"], expected.heading, rtol=0, atol=PRECISION)
     np.testing.assert_allclose(robots["forward_x"], np.cos(expected.heading), rtol=0, atol=PRECISION)
     np.testing.assert_allclose(robots["forward_y"], np.sin(expected.heading), rtol=0, atol=PRECISION)
 
 
 def compared(
-    kernel: Kernel, reference: ReferenceKernel, fleet: Fleet, calls: list[int]
+    kernel: Kernel, reference: ReferenceKernel, states: RobotStates, calls: list[int]
 ) -> Callable[[int, int], tuple[int, int]]:
     """Return the kernel's `advance`, which now has the reference do the same and compares.
 
@@ -54,13 +54,13 @@ def compared(
     advance = kernel.advance
 
     def advance_both(tick: int, until: int) -> tuple[int, int]:
-        state = State.of(fleet)
+        state = State.of(states)
         reference.supply = kernel.supply.tolist()
         expected_tick, expected = reference.advance(state, tick, until)
         reached, size = advance(tick, until)
         assert reached == expected_tick
         assert_same_events(kernel.events[:size], expected)
-        assert_same_state(fleet, state)
+        assert_same_state(states, state)
         calls.append(reached - tick)
         return reached, size
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from kswarms.agents.body import SENSORS
 from kswarms.agents.common.arrays import Floats, Integers
-from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, HOMING_ERROR, LEG, LEG_OVER, TURN, Fleet
+from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, HOMING_ERROR, LEG, LEG_OVER, TURN, RobotStates
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game
 from kswarms.model.kernel.percepts import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE, WALL
@@ -51,10 +51,10 @@ class State:
     swarm: Integers
 
     @classmethod
-    def of(cls, fleet: Fleet) -> Self:
-        """Copy the state of a fleet."""
+    def of(cls, states: RobotStates) -> Self:
+        """Copy the state of a states."""
         names = ("heading", "stride", "turn_rate", "phase", "carrying", "opponent", "swarm")
-        return cls(fleet.positions.copy(), *(fleet.robots[name].copy() for name in names))
+        return cls(states.positions.copy(), *(states.robots[name].copy() for name in names))
 
 
 class ReferenceKernel:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from numpy.typing import ArrayLike
 
 from kswarms.agents.common.arrays import Floats, Integers
-from kswarms.agents.robot.state import ACTION, IDLE, Fleet
+from kswarms.agents.robot.state import ACTION, IDLE, RobotStates
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game, Swarm, apportion
 from kswarms.model.description.parameters import PRESETS
@@ -23,11 +23,11 @@ class Scene:
 
     game: Game
     arena: Arena
-    fleet: Fleet
+    states: RobotStates
 
     def kernel(self) -> Kernel:
         """Return a compiled kernel that moves these robots."""
-        return Kernel(self.game, self.arena, self.fleet)
+        return Kernel(self.game, self.arena, self.states)
 
 
 def unit(angle: float) -> Floats:
@@ -39,10 +39,11 @@ def make_scene(game: Game, positions: ArrayLike, headings: ArrayLike, stride: Ar
     """Put robots that do nothing but drive into a game, S1's first."""
     sizes = [swarm.size for swarm in game.swarms]
     swarm_of = np.repeat(np.arange(len(sizes)), sizes)
-    fleet = Fleet(np.array(positions, dtype=np.float64), swarm_of, np.array(headings, dtype=np.float64))
-    fleet.robots["stride"] = stride
-    fleet.robots["phase"] = ACTION  # asks for nothing
-    return Scene(game, game.arena(0), fleet)
+    places, directions = (np.array(each, dtype=np.float64) for each in (positions, headings))
+    states = RobotStates(places, swarm_of, directions)
+    states.robots["stride"] = stride
+    states.robots["phase"] = ACTION  # asks for nothing
+    return Scene(game, game.arena(0), states)
 
 
 @st.composite
@@ -85,7 +86,7 @@ def scenes(draw: st.DrawFn, largest: int = 60) -> Scene:
     crowding = draw(st.sampled_from((0.0, 0.5, 0.95)))
     positions = crowd(draws, n, radius, game.side / 2, crowding, gap=2 * fastest)
     scene = make_scene(game, positions, draws.uniform(-math.pi, math.pi, n), 0.0)
-    robots = scene.fleet.robots
+    robots = scene.states.robots
     robots["phase"] = draws.integers(IDLE, ACTION + 1, n)
     robots["carrying"] = draws.integers(0, 2, n)
     robots["opponent"] = draws.integers(-1, n, n)
@@ -118,20 +119,20 @@ def crowd(
 
 def clone(scene: Scene, order: Integers | None = None) -> Scene:
     """Copy a scene, its robots numbered in another order: new number k is old number ``order[k]``."""
-    chosen = np.arange(len(scene.fleet.positions)) if order is None else order
-    robots = scene.fleet.robots[chosen]
+    chosen = np.arange(len(scene.states.positions)) if order is None else order
+    robots = scene.states.robots[chosen]
     new_number = np.append(np.argsort(chosen), -1)  # the last for an opponent of -1
-    fleet = Fleet(scene.fleet.positions[chosen], robots["swarm"], robots["heading"])
-    fleet.robots[:] = robots
-    fleet.robots["opponent"] = new_number[robots["opponent"]]
-    return replace(scene, fleet=fleet)
+    states = RobotStates(scene.states.positions[chosen], robots["swarm"], robots["heading"])
+    states.robots[:] = robots
+    states.robots["opponent"] = new_number[robots["opponent"]]
+    return replace(scene, states=states)
 
 
 def mirrored(scene: Scene) -> Scene:
     """Mirror a scene: left is right."""
     image = clone(scene)
-    robots = image.fleet.robots
-    image.fleet.positions[:, 0] *= -1
+    robots = image.states.robots
+    image.states.positions[:, 0] *= -1
     robots["heading"] = np.where(robots["heading"] > 0, math.pi, -math.pi) - robots["heading"]
     robots["forward_x"] *= -1
     robots["turn_rate"] *= -1

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from kswarms.agents.streams import WORLD, Purpose, stream
+from kswarms.agents.streams import ENVIRONMENT, Purpose, stream
 
 
 def first_draws(seed: int, robot: int, purpose: Purpose) -> tuple[float, ...]:
@@ -17,7 +17,7 @@ def test_a_name_gives_the_same_draws_again() -> None:
 
 
 def test_every_other_name_gives_other_draws() -> None:
-    names = list(itertools.product((0, 1, 2**40), (0, 1, WORLD), Purpose))
+    names = list(itertools.product((0, 1, 2**40), (0, 1, ENVIRONMENT), Purpose))
     assert len({first_draws(*name) for name in names}) == len(names)
 
 

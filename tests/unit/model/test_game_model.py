@@ -51,12 +51,12 @@ def test_what_the_limits_of_the_parameters_allow_can_be_played() -> None:
 def test_positions_are_the_kernels_own_memory() -> None:
     model = GameModel(GAME)
     for robot in model.robots:
-        assert np.shares_memory(robot.position, model.fleet.positions)
+        assert np.shares_memory(robot.position, model.states.positions)
         assert np.shares_memory(robot.position, model.space.agent_positions)
     before = [robot.position.copy() for robot in model.robots]
     model.env.run(until=15)
     for robot, start in zip(model.robots, before, strict=True):
-        assert (robot.position == model.fleet.positions[robot.index]).all()
+        assert (robot.position == model.states.positions[robot.index]).all()
         assert (robot.pos == robot.position).all()
         assert math.dist(robot.position, start) <= 15 * 0.015 + 1e-9
     assert all((robot.position != start).any() for robot, start in zip(model.robots, before, strict=True))
@@ -180,7 +180,7 @@ def test_the_trajectory() -> None:
     assert list(table.columns) == ["time", "robot", "x", "y", "heading", "state", "puck"]
     assert table["time"].unique().tolist() == pytest.approx([*range(0, 60, 7), 60])
     assert (table.groupby("time")["robot"].apply(list).map(lambda robots: robots == list(range(12)))).all()
-    assert table[table["time"] == 60.0][["x", "y"]].to_numpy().tolist() == model.fleet.positions.tolist()
+    assert table[table["time"] == 60.0][["x", "y"]].to_numpy().tolist() == model.states.positions.tolist()
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from kswarms.agents.actions import AWAY, TOWARDS, Action
 from kswarms.agents.body import BODIES, KREMBOT, KREMBOT_SIM, SENSORS, Body
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.robot.controller import Habits
+from kswarms.agents.robot.controller import Controller
 
 
 class Nested(Checked):
@@ -122,7 +122,7 @@ def test_a_body_refuses(field: str, value: float) -> None:
     ],
 )
 def test_durations_are_whole_periods_rounded_up(seconds: float, period: float, periods: int) -> None:
-    habits = Habits(
+    controller = Controller(
         period=period,
         turn_step=0.3,
         leg_mean=6.7,
@@ -134,4 +134,4 @@ def test_durations_are_whole_periods_rounded_up(seconds: float, period: float, p
         active_range=0.3,
         escape_away=False,
     )
-    assert habits.periods(seconds) == periods
+    assert controller.periods(seconds) == periods

@@ -110,7 +110,7 @@ def test_the_nearest_robot_ahead_is_met(scene: Scene) -> None:
     far, near, nearer_but_aside = (0.28, 0.05, 0.0), (0.22, -0.08, 0.0), (0.0, 0.175, 1.5)
     model = scene([(0.0, 0.0, 0.0)], [far, near, nearer_but_aside], policies="attack,avoid")
     model.env.run(until=1)
-    assert model.fleet.opponent[0] == 2
+    assert model.states.opponent[0] == 2
 
 
 @pytest.mark.parametrize(
@@ -172,10 +172,10 @@ def test_another_robot_ahead_interrupts_an_action_only_if_asked_to(scene: Scene,
         record="conflicts",
     )
     model.env.run(until=10)
-    assert model.fleet.opponent[0] == 1
+    assert model.states.opponent[0] == 1
     model.robots[2].position = np.array([pose(model)[0] + 0.18, 0.05])
     model.env.run(until=12)
-    assert model.fleet.opponent[0] == (2 if preempt else 1)
+    assert model.states.opponent[0] == (2 if preempt else 1)
     assert model.robots[0].conflicts == [0, 2 if preempt else 1]
     assert [(c["t_a"], c["t_p"]) for c in conflicts(model)] == ([(10, 0)] if preempt else [])
     if preempt:
@@ -200,7 +200,7 @@ def test_an_interrupted_turn_has_no_end(scene: Scene) -> None:
     model.robots[2].position = 0.3 * np.array([math.cos(heading - 1.05), math.sin(heading - 1.05)])
     for now in range(6, 40):
         model.env.run(until=now)
-        assert model.fleet.stride[0] == 0
+        assert model.states.stride[0] == 0
     model.env.run(until=5 + 35 + 3)
     assert pose(model)[2] == pytest.approx(heading - 1.05)
     assert math.dist(pose(model)[:2], (0.0, 0.0)) == pytest.approx(3 * 0.015)
@@ -220,7 +220,7 @@ def test_a_conflict_drops_a_pending_turn(scene: Scene) -> None:
         policies="attack,avoid",
         changes={"turning_rate": 0.05, "leg_mean": 1e-3},
     )
-    turn_rate = model.fleet.turn_rate
+    turn_rate = model.states.turn_rate
     model.env.run(until=4)
     assert turn_rate[0] != 0
     x, y, heading = pose(model)

@@ -151,8 +151,8 @@ def wall_turns(scene: Scene, start: tuple[float, float, float], **changes: Any) 
     for seed in range(60):
         model = scene([start], changes=changes, seed=seed)
         model.env.run(until=1)
-        assert model.fleet.turn_rate[0] != 0
-        while model.fleet.turn_rate[0] != 0:
+        assert model.states.turn_rate[0] != 0
+        while model.states.turn_rate[0] != 0:
             model.env.run(until=model.env.now + 1)
         headings.append(pose(model)[2])
         assert math.dist(pose(model)[:2], start[:2]) < 0.016  # it turned in place, and drives now

@@ -41,7 +41,7 @@ def test_a_game_watched_step_by_step_is_the_game_played_in_one_go() -> None:
     straight = GameModel(LEARNING, seed=5)
     straight.play()
     assert player.model.results() == straight.results()
-    np.testing.assert_array_equal(player.snapshot().positions, straight.fleet.positions)
+    np.testing.assert_array_equal(player.snapshot().positions, straight.states.positions)
     assert player.time == 40.0
 
 
@@ -170,7 +170,7 @@ def test_a_robot_is_seen_as_it_is() -> None:
         robot = model.robots[index]
         assert (view.robot, view.swarm, view.pucks) == (index, robot.swarm + 1, robot.pucks)
         assert sum(view.t_a) + view.t_p == pytest.approx(50.0)
-        assert (view.doing == "in conflict") == (model.fleet.phase[index] == ACTION)
+        assert (view.doing == "in conflict") == (model.states.phase[index] == ACTION)
         assert len(view.sensors) == 8
         limit = model.game.parameters.active_range
         assert all(sensor.active == (sensor.free <= limit) for sensor in view.sensors)
