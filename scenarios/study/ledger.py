@@ -143,6 +143,14 @@ class Ledger(Database):
         ):
             yield Point(*point), self._parse_json(rows)
 
+    def grid_points(self) -> dict[Curve, dict[str, Any]]:
+        """Return the values that a grid sets, by field, of each curve with a grid."""
+        points = {}
+        for scenario, condition, text in self.query("SELECT * FROM curves ORDER BY scenario, condition"):
+            if point := self._parse_json(text)["condition"].get("grid_point"):
+                points[scenario, condition] = dict(point)
+        return points
+
     def records(self, name: str) -> Iterator[tuple[str, bytes]]:
         """Yield a recorded table, packed, of each finished run that has it, ordered by digest."""
         yield from self.query(

@@ -8,8 +8,8 @@ from typing import Any, Final
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from kswarms.agents.common.columns import ARM, RECORDED_TABLES, SCHEMA_VERSION, TABLES, Column
-from kswarms.scenarios.study.ledger import Ledger
+from kswarms.agents.common.columns import ARM, RECORDED_TABLES, SCHEMA_VERSION, TABLES, Column, names
+from kswarms.scenarios.study.ledger import Curve, Ledger, Point
 
 STUDY_TABLES: Final = ("runs", "policies", *RECORDED_TABLES)
 """Names of the tables of a study."""
@@ -21,6 +21,8 @@ _ROWS_PER_GROUP: Final = 100_000
 """Minimum number of rows of a row group, which limits the memory of an export."""
 
 _KINDS: Final = {"text": pa.string(), "integer": pa.int64(), "real": pa.float64(), "boolean": pa.bool_()}
+_GRID_KINDS: Final = {"boolean": {bool}, "integer": {int}, "real": {int, float}}
+"""Types of the values of a grid that a kind of column accepts; text accepts all."""
 
 
 def arrow_schema(columns: Iterable[Column]) -> pa.Schema:
@@ -70,19 +72,41 @@ def export(ledger: Ledger, directory: Path) -> list[Path]:
     OSError
         If writing fails, or the ledger is damaged.
     """
-    paths = {name: directory / f"{name}.parquet" for name in STUDY_TABLES}
+    grid_columns, grid_points = _grid(ledger)
+    paths = []
     try:
-        return [path for name, path in paths.items() if _write(path, *_read_table(ledger, name))]
+        for name in STUDY_TABLES:
+            if name in RECORDED_TABLES:
+                schema, parts = arrow_schema(TABLES[name]), _recorded_parts(ledger, name)
+            else:
+                labels, rest = TABLES[name][: len(Point._fields)], TABLES[name][len(Point._fields) :]
+                schema = arrow_schema((*labels, *grid_columns, *rest))
+                parts = _result_parts(ledger, name, schema, grid_points)
+            path = directory / f"{name}.parquet"
+            if _write(path, schema, parts):
+                paths.append(path)
     except (pa.ArrowException, LookupError) as error:
         raise OSError(f"{ledger.path}: is damaged ({error!r})") from error
+    return paths
 
 
-def _read_table(ledger: Ledger, name: str) -> tuple[pa.Schema, Iterator[pa.Table]]:
-    """Return the schema of a table and its rows, in order and in parts."""
-    schema = arrow_schema(TABLES[name])
-    if name in RECORDED_TABLES:
-        return schema, _recorded_parts(ledger, name)
-    return schema, _result_parts(ledger, name, schema)
+def _grid(ledger: Ledger) -> tuple[list[Column], dict[Curve, dict[str, Any]]]:
+    """Return a column for each field of the grids, and the values by curve and column."""
+    taken = {*names("runs"), *names("policies")}
+    points = {
+        curve: {f"grid.{field}" if field in taken else field: value for field, value in point.items()}
+        for curve, point in ledger.grid_points().items()
+    }
+    columns = []
+    for name in dict.fromkeys(name for point in points.values() for name in point):
+        having = [point for point in points.values() if name in point]
+        types = {type(point[name]) for point in having}
+        kind = next((kind for kind, accepted in _GRID_KINDS.items() if types <= accepted), "text")
+        if kind == "text":
+            for point in having:
+                point[name] = str(point[name])
+        columns.append(Column(name, kind, "", "value in the grid of the scenario"))
+    return columns, points
 
 
 def _recorded_parts(ledger: Ledger, name: str) -> Iterator[pa.Table]:
@@ -91,10 +115,17 @@ def _recorded_parts(ledger: Ledger, name: str) -> Iterator[pa.Table]:
         yield part.add_column(0, "run", pa.array([run] * len(part), pa.string()))
 
 
-def _result_parts(ledger: Ledger, name: str, schema: pa.Schema) -> Iterator[pa.Table]:
+def _result_parts(
+    ledger: Ledger, name: str, schema: pa.Schema, grid_points: Mapping[Curve, Mapping[str, Any]]
+) -> Iterator[pa.Table]:
+    no_grid = dict.fromkeys(column for point in grid_points.values() for column in point)
     points = ledger.results(_LEDGER_COLUMNS[name])
     while some := list(islice(points, _POINTS_PER_PART)):
-        rows = [{**point._asdict(), **row} for point, rows in some for row in rows]
+        rows = [
+            no_grid | grid_points.get((point.scenario, point.condition), {}) | point._asdict() | row
+            for point, rows in some
+            for row in rows
+        ]
         yield pa.table({column: [row[column] for row in rows] for column in schema.names}, schema=schema)
 
 

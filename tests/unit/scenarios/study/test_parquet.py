@@ -1,5 +1,6 @@
 """Tables of results: their columns, their order, and that they hold the runs of the ledger and no others."""
 
+import json
 import math
 import random
 from collections.abc import Callable, Iterable
@@ -269,3 +270,34 @@ def test_a_game_without_a_conflict_gives_a_table_without_rows(tmp_path: Path) ->
     }
     write(tmp_path, [run], lambda _: outcome)
     assert pq.read_table(tmp_path / "conflicts.parquet").schema.equals(arrow_schema(TABLES["conflicts"]))
+
+
+def test_fields_of_a_grid_are_columns_typed_by_their_values(tmp_path: Path) -> None:
+    def curve(*point: tuple[str, object]) -> str:
+        return json.dumps({"condition": {"grid_point": point}})
+
+    curves = {
+        ("fig-6.1c", ""): curve(("side", 2), ("duration", 5.0), ("layout", "symmetric")),
+        ("fig-6.2", ""): curve(("side", 2.5), ("duration", 6.0), ("actions", True), ("layout", False)),
+        ("fig-6.1a", ""): json.dumps({"condition": {}}),  # as of version 0.1.0
+    }
+    runs = runs_of("fig-6.1c", "fig-6.2", "fig-6.1a", seeds=1, densities=(6,))
+    with Ledger(tmp_path / LEDGER_FILE, new=True) as ledger:
+        ledger.plan({}, curves, runs)
+        for run in runs:
+            ledger.add(run, outcome_of(run), 0.1)
+        export(ledger, tmp_path)
+    schema = pq.read_schema(tmp_path / "runs.parquet")
+    assert schema.names[3:10] == ["n", "seed", "side", "grid.duration", "layout", "actions", "swarm"]
+    assert [str(schema.field(name).type) for name in schema.names[5:9]] == [
+        "double",
+        "double",
+        "string",
+        "bool",
+    ]
+    columns = ("scenario", "side", "grid.duration", "layout", "actions", "duration")
+    assert [tuple(row[column] for column in columns) for row in rows(tmp_path) if row["swarm"] == 1] == [
+        ("fig-6.1a", None, None, None, None, 600.0),
+        ("fig-6.1c", 2.0, 5.0, "symmetric", None, 600.0),
+        ("fig-6.2", 2.5, 6.0, "False", True, 600.0),
+    ]
