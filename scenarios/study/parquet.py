@@ -21,7 +21,7 @@ _ROWS_PER_GROUP: Final = 100_000
 """Minimum number of rows of a row group, which limits the memory of an export."""
 
 _KINDS: Final = {"text": pa.string(), "integer": pa.int64(), "real": pa.float64(), "boolean": pa.bool_()}
-_GRID_KINDS: Final = {"boolean": {bool}, "integer": {int}, "real": {int, float}}
+_GRID_KINDS: Final[dict[str, set[type]]] = {"boolean": {bool}, "integer": {int}, "real": {int, float}}
 """Types of the values of a grid that a kind of column accepts; text accepts all."""
 
 
@@ -116,9 +116,9 @@ def _recorded_parts(ledger: Ledger, name: str) -> Iterator[pa.Table]:
 
 
 def _result_parts(
-    ledger: Ledger, name: str, schema: pa.Schema, grid_points: Mapping[Curve, Mapping[str, Any]]
+    ledger: Ledger, name: str, schema: pa.Schema, grid_points: Mapping[Curve, dict[str, Any]]
 ) -> Iterator[pa.Table]:
-    no_grid = dict.fromkeys(column for point in grid_points.values() for column in point)
+    no_grid: dict[str, Any] = dict.fromkeys(column for point in grid_points.values() for column in point)
     points = ledger.results(_LEDGER_COLUMNS[name])
     while some := list(islice(points, _POINTS_PER_PART)):
         rows = [
