@@ -130,4 +130,4 @@ def _temporary(path: Path) -> Iterator[Path]:
         with whole(path) as file:
             yield file
     except OSError as error:
-        raise InputError("out", str(path), "must be a place that can be written") from error
+        raise InputError("out", str(path), f"must be a writable file ({error.strerror})") from error

@@ -1,17 +1,17 @@
-"""What tests read from a page of HTML."""
+"""Elements of an HTML page, for tests."""
 
 from collections.abc import Iterable
 from html.parser import HTMLParser
 
 
 class Page(HTMLParser):
-    """What a test asks of a page: anchors, links, pictures, headings."""
+    """Anchors, links, images and addresses of a page."""
 
     def __init__(self, html: str) -> None:
         super().__init__()
         self.ids: list[str] = []
         self.links: list[str] = []
-        self.pictures: list[dict[str, str | None]] = []
+        self.images: list[dict[str, str | None]] = []
         self.addresses: list[str] = []
         self.feed(html)
 
@@ -22,5 +22,5 @@ class Page(HTMLParser):
         if tag == "a":
             self.links.append(str(given["href"]))
         if tag == "img":
-            self.pictures.append(given)
+            self.images.append(given)
         self.addresses += [str(given[name]) for name in ("src", "href") if name in given]

@@ -1,4 +1,4 @@
-"""The command `report`: what it covers, what it refuses, and what a browser makes of it."""
+"""The command `report`: content, errors, and display in a browser."""
 
 import os
 import shutil
@@ -18,9 +18,9 @@ from tests.helpers.result_rows import MET, robots, runs_of
 if TYPE_CHECKING:
     from selenium.webdriver import Chrome
 
-# A curve for each swarm, panels, a table of the source, three swarms, the comparison with ARGoS.
-SHOWN = ("fig-6.1c", "fig-6.3", "fig-6.4a", "fig-7.10", "argos-avoid-attack")
-OWN = """
+# Two swarms, panels, a table of the source, three swarms, the comparison with ARGoS.
+SHUSER_FINDING = ("fig-6.1c", "fig-6.3", "fig-6.4a", "fig-7.10", "argos-avoid-attack")
+USER_FINDING = """
 [[findings]]
 id = "mine"
 statement = "Attackers score more."
@@ -35,15 +35,15 @@ over = "mean over N"
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a directory with made-up runs of some scenarios and one game with its records."""
+    """Return a directory with random outcomes of some scenarios."""
     directory = tmp_path_factory.mktemp("my <results>")
-    study.write_study(directory, [CATALOGUE[name] for name in SHOWN], densities=3, seeds=7)
+    study.write_study(directory, [CATALOGUE[name] for name in SHUSER_FINDING], densities=3, seeds=7)
     return directory
 
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a directory with the records of two short games of a scenario with a learner."""
+    """Return a directory with two short games of a learner, with conflicts and robots recorded."""
     from kswarms.scenarios.study.study import Study
 
     scenario = CATALOGUE["fig-6.4b"]
@@ -57,7 +57,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def pages(results: Path, recorded: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """Return the reports on both directories, made once."""
+    """Return the reports on both directories."""
     directory = tmp_path_factory.mktemp("pages")
     made = {"results": directory / "results.html", "recorded": directory / "recorded.html"}
     for path, source in zip(made.values(), (results, recorded), strict=True):
@@ -65,12 +65,12 @@ def pages(results: Path, recorded: Path, tmp_path_factory: pytest.TempPathFactor
     return made
 
 
-def test_a_report_covers_what_the_directory_holds(
+def test_a_report_shows_all_results(
     results: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    own, out = tmp_path / "own.toml", tmp_path / "page.html"
-    own.write_text(OWN)
-    words = [str(results), "--out", str(out), "--findings", str(own), "--files", str(tmp_path / "files")]
+    findings, out = tmp_path / "own.toml", tmp_path / "page.html"
+    findings.write_text(USER_FINDING)
+    words = [str(results), "--out", str(out), "--findings", str(findings), "--files", str(tmp_path / "files")]
     assert invoke(["report", *words]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[:2] for line in lines] == [
@@ -79,7 +79,7 @@ def test_a_report_covers_what_the_directory_holds(
     ]
     html = out.read_text()
     page = Page(html)
-    assert set(SHOWN) <= set(page.ids)
+    assert set(SHUSER_FINDING) <= set(page.ids)
     assert {"table-6.1", "argos", "findings", "missing-games", "provenance"} <= set(page.ids)
     assert "fig-6.2" not in page.ids
     assert "not played: fig-6.1a, fig-6.1b, fig-6.2," in html
@@ -88,9 +88,9 @@ def test_a_report_covers_what_the_directory_holds(
     assert len(page.ids) == len(set(page.ids))
     assert all(link[1:] in page.ids for link in page.links if link.startswith("#"))
     assert all(address.startswith(("#", "data:")) for address in page.addresses)
-    assert all(picture["alt"] for picture in page.pictures)
-    # Two of each scenario, one more of each learner.
-    assert len(page.pictures) == 2 * len(SHOWN) + 2
+    assert all(image["alt"] for image in page.images)
+    # Two figures of each scenario and one more of each learner.
+    assert len(page.images) == 2 * len(SHUSER_FINDING) + 2
     assert "Attackers score more." in html
     assert "published" in html
     files = {path.name for path in (tmp_path / "files").iterdir()}
@@ -114,22 +114,22 @@ def test_help_has_an_example(capsys: pytest.CaptureFixture[str]) -> None:
     assert "Example: kswarms report results" in capsys.readouterr().out
 
 
-def test_records_have_their_chapters(pages: dict[str, Path]) -> None:
+def test_recorded_games_have_their_chapters(pages: dict[str, Path]) -> None:
     page = Page(pages["recorded"].read_text())
     for part in ("network-fig-6-4b", "emergence-fig-6-4b", "robots-fig-6-4b", "map-fig-6-4b"):
         assert part in page.ids
-    assert len(page.pictures) == 3 + 2 + 2 + 1 + 1
+    assert len(page.images) == 3 + 2 + 2 + 1 + 1
 
 
-def test_scenarios_of_ones_own_have_a_chapter_of_their_own(tmp_path: Path) -> None:
+def test_user_defined_scenarios_have_their_own_chapter(tmp_path: Path) -> None:
     runs = runs_of("hunt", densities=[16], seeds=1)
     runs.to_parquet(tmp_path / "runs.parquet")
     MET.assign(run=runs["run"].iloc[0]).to_parquet(tmp_path / "conflicts.parquet")
-    robots()[:1].assign(run=runs["run"].iloc[0]).to_parquet(tmp_path / "robots.parquet")  # it does not learn
+    robots()[:1].assign(run=runs["run"].iloc[0]).to_parquet(tmp_path / "robots.parquet")  # not a learner
     assert invoke(["report", str(tmp_path)]) == 0
     page = Page((tmp_path / "report.html").read_text())
     assert {"other-scenarios", "hunt", "network-hunt", "map-hunt"} <= set(page.ids)
-    assert len(page.pictures) == 2 + 2 + 1
+    assert len(page.images) == 2 + 2 + 1
 
 
 @pytest.mark.parametrize(
@@ -152,7 +152,7 @@ def test_scenarios_of_ones_own_have_a_chapter_of_their_own(tmp_path: Path) -> No
         ("good --files good/runs.parquet", "files='good/runs.parquet': must be a folder"),
     ],
 )
-def test_bad_input_is_refused_in_one_line_and_nothing_is_written(
+def test_errors_are_one_line_and_write_nothing(
     arguments: str,
     line: str,
     results: Path,
@@ -164,7 +164,7 @@ def test_bad_input_is_refused_in_one_line_and_nothing_is_written(
     for name in ("empty", "broken", "corrupt", "good"):
         Path(name).mkdir()
     Path("broken/runs.parquet").write_bytes(b"PAR1")
-    Path("taken.toml").write_text(OWN.replace('id = "', 'id = "6.1a-alike" # "'))
+    Path("taken.toml").write_text(USER_FINDING.replace('id = "', 'id = "6.1a-alike" # "'))
     for name in ("corrupt", "good"):
         study.write_study(Path(name), [CATALOGUE["fig-6.1a"]], densities=2, seeds=1)
     Path("corrupt/conflicts.parquet").write_bytes(b"PAR1")
@@ -183,7 +183,7 @@ CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator["Chrome"]:
-    """Start a Chromium without a window, that writes down what pages complain of."""
+    """Start a headless Chromium that logs the messages of pages."""
     if CHROMIUM is None or DRIVER is None:
         pytest.skip("needs chromium and chromedriver: apt-get install chromium chromium-driver")
     from selenium import webdriver
@@ -211,7 +211,7 @@ def open_at(browser: "Chrome", path: Path, width: int, dark: bool = False) -> No
 
 
 def problems(browser: "Chrome") -> dict[str, Any]:
-    """Return what is wrong with the page that is open; nothing of it should be."""
+    """Return the problems of the current page."""
     found: dict[str, Any] = browser.execute_script("""
         const page = document.documentElement;
         return {
@@ -224,22 +224,22 @@ def problems(browser: "Chrome") -> dict[str, Any]:
     return found | {"console": browser.get_log("browser")}
 
 
-FINE = {"broken": [], "overflow": 0, "unlabelled": 0, "console": []}
+NO_PROBLEMS = {"broken": [], "overflow": 0, "unlabelled": 0, "console": []}
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("width", [1280, 390])
 @pytest.mark.parametrize("source", ["results", "recorded"])
-def test_a_browser_opens_the_report_without_complaint(
+def test_a_browser_shows_the_report_without_problems(
     browser: "Chrome", source: str, width: int, pages: dict[str, Path]
 ) -> None:
     open_at(browser, pages[source], width)
-    assert problems(browser) == FINE
+    assert problems(browser) == NO_PROBLEMS
     assert browser.execute_script("return document.images.length") > 5
 
 
 @pytest.mark.slow
-def test_the_page_follows_the_reader_into_the_dark(browser: "Chrome", pages: dict[str, Path]) -> None:
+def test_the_page_has_a_dark_colour_scheme(browser: "Chrome", pages: dict[str, Path]) -> None:
     colours = []
     for dark in (False, True):
         open_at(browser, pages["recorded"], 1280, dark)
@@ -248,7 +248,7 @@ def test_the_page_follows_the_reader_into_the_dark(browser: "Chrome", pages: dic
 
 
 @pytest.mark.slow
-def test_a_broken_page_is_noticed(browser: "Chrome", tmp_path: Path) -> None:
+def test_problems_of_a_broken_page_are_found(browser: "Chrome", tmp_path: Path) -> None:
     path = tmp_path / "broken.html"
     path.write_text(
         "<!doctype html><meta name=viewport content='width=device-width, initial-scale=1'>"

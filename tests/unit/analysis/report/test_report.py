@@ -1,4 +1,4 @@
-"""The pieces of a report: what is covered, what a page is made of, where results come from."""
+"""Parts of a report: coverage, page, findings, recorded games, provenance."""
 
 import json
 from pathlib import Path
@@ -27,17 +27,17 @@ PLAN = {
 }
 
 
-def test_coverage_counts_the_games_of_the_plan_and_names_what_is_not_there() -> None:
+def test_coverage_counts_planned_games_and_describes_missing_ones() -> None:
     part = runs_of("fig-y", conditions=("a",), densities=(6, 16), seeds=3)
     rows = coverage(pd.concat([runs_of("fig-x"), part]), PLAN).to_dict("records")
     assert rows == [
-        {"scenario": "fig-x", "games": 8, "planned": 8, "missing": ""},  # its games at 26 are beside the plan
+        {"scenario": "fig-x", "games": 8, "planned": 8, "missing": ""},  # N = 26 is not planned
         {"scenario": "fig-y", "games": 6, "planned": 24, "missing": "conditions b; N = 26; seeds (3 of 4)"},
         {"scenario": "fig-z", "games": 0, "planned": 20, "missing": "everything"},
     ]
 
 
-def test_coverage_of_gaps_that_no_list_tells() -> None:
+def test_coverage_describes_irregular_gaps() -> None:
     runs = runs_of("fig-y", conditions=("a", "b"), densities=(6, 16, 26))
     some = runs[(runs["condition"] == "a") | (runs["n"] == 6) | (runs["seed"] < 2)]
     (row,) = coverage(some, {"fig-y": PLAN["fig-y"]}).to_dict("records")
@@ -47,7 +47,7 @@ def test_coverage_of_gaps_that_no_list_tells() -> None:
     assert row["missing"] == "some conditions at some N"
 
 
-def test_what_is_missing_is_printed_by_scenario_and_the_rest_in_a_line() -> None:
+def test_the_table_of_missing_games_has_incomplete_scenarios_and_a_caption() -> None:
     table = coverage_table(coverage(pd.concat([runs_of("fig-x"), runs_of("fig-y", conditions=("a",))]), PLAN))
     assert table.rows == [["fig-y", "12", "24", "conditions b"]]
     assert table.caption == "1 of 3 scenarios are complete, 1 in part; not played: fig-z."
@@ -70,7 +70,7 @@ def a_report() -> Report:
     )
 
 
-def test_a_page_holds_everything_itself_and_its_links_lead_somewhere() -> None:
+def test_a_page_is_self_contained_and_its_links_are_valid() -> None:
     html = a_report().to_html()
     page = Page(html)
     assert len(page.ids) == len(set(page.ids))
@@ -78,8 +78,8 @@ def test_a_page_holds_everything_itself_and_its_links_lead_somewhere() -> None:
     inner = [link for link in page.links if link.startswith("#")]
     assert set(inner) == {"#content", "#first", "#one", "#second"}
     assert all(address.startswith(("#", "data:")) for address in page.addresses)
-    (picture,) = page.pictures
-    assert picture["alt"] == 'alt "quoted"'
+    (image,) = page.images
+    assert image["alt"] == 'alt "quoted"'
     assert "text &lt;b&gt;" in html
     assert "One &amp; only" in html
     assert "<script" not in html
@@ -88,7 +88,7 @@ def test_a_page_holds_everything_itself_and_its_links_lead_somewhere() -> None:
     assert downloads == ["N,x\n6,1.25\n", "| N | x |\n|--:|--:|\n| 6 | 1.0 |\n\nbelow\n"]
 
 
-def test_a_page_and_its_files_are_written_or_refused(tmp_path: Path) -> None:
+def test_page_and_files_are_written_or_an_error_is_raised(tmp_path: Path) -> None:
     report = a_report()
     report.write_page(tmp_path / "page.html")
     assert (tmp_path / "page.html").read_text() == report.to_html()
@@ -106,7 +106,7 @@ def test_verdicts_are_counted_and_marked() -> None:
         [
             Verdict("a", "A holds.", "holds", 1.234, 0.5, 2.0, "pucks", 20, ""),
             Verdict("b", "B fails.", "fails", -1.0, None, -0.25, "pucks", 20, "at N = 6"),
-            Verdict("c", "C is not known.", "undecided", 1.0, None, None, "pucks", 3, "too few"),
+            Verdict("c", "C is unknown.", "undecided", 1.0, None, None, "pucks", 3, "too few"),
             Verdict("d", "D was not played.", "no data", note="no runs"),
         ]
     )
@@ -119,16 +119,18 @@ def test_verdicts_are_counted_and_marked() -> None:
     assert list(table.frame["finding"]) == ["a", "b", "c", "d"]
 
 
-def test_argos_is_compared_where_it_was_played() -> None:
+def test_argos_is_compared_at_common_densities() -> None:
     assert list(argos_parts(runs_of("fig-x"))) == []
-    assert list(argos_parts(runs_of("argos-avoid-avoid", densities=[50]))) == []  # ARGoS was not run at 50
+    assert (
+        list(argos_parts(runs_of("argos-avoid-avoid", densities=[50]))) == []
+    )  # not played in ARGoS
     ((chapter, part),) = argos_parts(runs_of("argos-avoid-avoid", densities=[16]))
     assert chapter == "argos-"
     assert part.text[1].startswith("Scores agree in ")
     assert len(part.tables[0].table.rows) == 2
 
 
-def test_a_shared_game_is_looked_at_once(tmp_path: Path) -> None:
+def test_a_shared_game_belongs_to_the_first_condition(tmp_path: Path) -> None:
     first = runs_of("fig-b", conditions=("x", "y"))
     runs = pd.concat([first, first[first["condition"] == "x"].assign(scenario="fig-a")])
     wanted = runs[runs["n"] == 16]["run"].unique()
@@ -140,7 +142,7 @@ def test_a_shared_game_is_looked_at_once(tmp_path: Path) -> None:
     assert robots == []
 
 
-def test_stations_that_differ_from_seed_to_seed_are_not_drawn_into_one_map(tmp_path: Path) -> None:
+def test_random_stations_are_not_drawn_into_the_common_map(tmp_path: Path) -> None:
     runs = runs_of("fig-x", densities=[16], seeds=2)
     games = [MET.assign(run=run) for run in runs["run"].unique()]
     pd.concat(games).to_parquet(tmp_path / "conflicts.parquet")
@@ -165,7 +167,7 @@ def test_stations_that_differ_from_seed_to_seed_are_not_drawn_into_one_map(tmp_p
         assert drawn("random-stations", patch) == [False]
 
 
-def test_provenance_without_a_manifest_says_so(tmp_path: Path) -> None:
+def test_provenance_without_a_manifest(tmp_path: Path) -> None:
     runs_of("fig-x").to_parquet(tmp_path / "runs.parquet")
     files, made_with, manifest = provenance_parts(tmp_path)
     assert files.tables[0].table.rows[0][:2] == ["runs.parquet", "24"]
@@ -173,7 +175,7 @@ def test_provenance_without_a_manifest_says_so(tmp_path: Path) -> None:
     assert "no manifest.json" in manifest.text[0]
 
 
-def test_provenance_shows_what_the_manifest_holds(tmp_path: Path) -> None:
+def test_provenance_shows_the_manifest(tmp_path: Path) -> None:
     runs_of("fig-x").to_parquet(tmp_path / "runs.parquet")
     content = {
         "kswarms": "0.1.0",
@@ -193,7 +195,7 @@ def test_provenance_shows_what_the_manifest_holds(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("text", "allowed"), [("{", "readable JSON"), ("[1]", "a JSON object")])
-def test_a_manifest_that_is_none(tmp_path: Path, text: str, allowed: str) -> None:
+def test_an_invalid_manifest_is_an_error(tmp_path: Path, text: str, allowed: str) -> None:
     (tmp_path / "manifest.json").write_text(text)
     with pytest.raises(InputError, match=f"manifest.json': must be {allowed}"):
         provenance_parts(tmp_path)
