@@ -1,1 +1,1 @@
-"""The live page: a game that is watched while it is played (`kswarms explore`)."""
+"""The page of `kswarms explore`, which shows a game while it is played."""

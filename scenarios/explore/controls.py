@@ -1,4 +1,4 @@
-"""The controls at the side of the page: what is played."""
+"""Controls of the page: the description of the game."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -13,7 +13,7 @@ from kswarms.agents.learning.selection_rules import RULES
 from kswarms.agents.policies.registry import ALIASES, POLICIES
 from kswarms.analysis.colours import swarm_colour
 from kswarms.model.description.fields import LAYOUTS
-from kswarms.model.description.parameters import Parameters, parse_parameters
+from kswarms.model.description.parameters import parse_parameters
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.explore.form import learning_of
 from kswarms.scenarios.explore.session import Act, Session
@@ -24,13 +24,13 @@ _SLIDERS: Final = {
     "conflict_distance": ("Conflict distance (m)", (0.02, 0.4, 0.01)),
     "flight_duration": ("Flight (s)", (0.1, 5.0, 0.1)),
     "fight_duration": ("Fight (s)", (0.1, 5.0, 0.1)),
-    "base_range": ("Base seen from (m)", (0.1, 2.0, 0.02)),
+    "base_range": ("Base visible from (m)", (0.1, 2.0, 0.02)),
     "leg_mean": ("Mean wander leg (s)", (0.5, 20.0, 0.5)),
     "push_share": ("Push share", (0.0, 1.0, 0.05)),
 }
-"""Parameters of the world that have a slider: label; least, greatest, step."""
+"""Parameters of the world with a slider: label; minimum, maximum, step."""
 _DRIVE: Final = (0.05, 1.0, 0.05)
-_KNOWN_POLICIES: Final = [name for name in (*POLICIES, *ALIASES) if name != "learned"]
+_POLICY_NAMES: Final = [name for name in (*POLICIES, *ALIASES) if name != "learned"]
 
 
 @solara.component
@@ -40,8 +40,7 @@ def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     form = session.form
 
     def change(**changes: Any) -> None:
-        # The form as it is then: the page may not have been drawn again since the last change.
-        act(lambda: session.change(session.form._replace(**changes)))
+        act(lambda: session.change(**changes))
 
     _scenario(session, act)
     step = session.step_of_n()
@@ -62,28 +61,23 @@ def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:
         )
     for k in range(len(form.swarms)):
         _swarm(session, k, act)
+    swarms = len(form.swarms)
     with solara.Row(gap="6px"):
-        swarms = len(form.swarms)
-        solara.Button(
-            "Add a swarm",
-            small=True,
-            text=True,
-            on_click=lambda: act(lambda: session.change_swarms(len(session.form.swarms) + 1)),
-        )
-        solara.Button(
-            f"Remove S{swarms}",
-            small=True,
-            text=True,
-            disabled=swarms == 1,
-            on_click=lambda: act(lambda: session.change_swarms(len(session.form.swarms) - 1)),
-        )
-    _learning(session, act)
+        for label, number in (("Add a swarm", swarms + 1), (f"Remove S{swarms}", swarms - 1)):
+            solara.Button(
+                label,
+                small=True,
+                text=True,
+                disabled=number == 0,
+                on_click=lambda number=number: act(lambda: session.change_number_of_swarms(number)),
+            )
+    _learning(session, change, act)
     with solara.Details("World"):
         _world(session, change, act)
     with solara.Details("Drawing"):
         for name, label in (
-            ("show_sectors", "Conflict sectors of all"),
-            ("show_sensors", "Sensors of the chosen"),
+            ("show_sectors", "Conflict sectors of all robots"),
+            ("show_sensors", "Sensors of the selected robot"),
         ):
             solara.Checkbox(
                 label=label,
@@ -92,14 +86,14 @@ def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:
             )
 
 
-# No components of their own: such a one is drawn anew only where its arguments are others.
+# Plain functions, not components: solara renders a component again only if its arguments change.
 
 
 def _slider(
-    label: str, value: float, scale: tuple[float, float, float], tell: Callable[[float], None]
+    label: str, value: float, scale: tuple[float, float, float], change: Callable[[float], None]
 ) -> None:
-    """Show a slider; a value between its steps stays as it is until it is moved."""
-    # Vuetify reports the nearest value that it can show as if somebody had chosen it.
+    """Show a slider; a value between two steps is kept until the slider is moved."""
+    # Vuetify reports the nearest step as if the user had selected it.
     least, greatest, step = scale
     nearest = min(max(least + round((value - least) / step) * step, least), greatest)
     solara.SliderFloat(
@@ -108,7 +102,7 @@ def _slider(
         min=least,
         max=greatest,
         step=step,
-        on_value=lambda chosen: None if math.isclose(chosen, nearest, abs_tol=1e-9) else tell(chosen),
+        on_value=lambda new: None if math.isclose(new, nearest, abs_tol=1e-9) else change(new),
     )
 
 
@@ -121,12 +115,12 @@ def _scenario(session: Session, act: Act) -> None:
         hint=session.title,
         persistent_hint=True,
     )
-    if len(session.curves) > 1:
+    if len(session.conditions) > 1:
         solara.Select(
             "Condition",
-            value=session.curve,
-            values=list(session.curves),
-            on_value=lambda name: act(lambda: session.choose_curve(name)),
+            value=session.condition,
+            values=list(session.conditions),
+            on_value=lambda name: act(lambda: session.select_condition(name)),
         )
 
 
@@ -140,70 +134,74 @@ def _swarm(session: Session, k: int, act: Act) -> None:
     with solara.v.Html(tag="div", class_="kswarms-swarm", style_=border):
         solara.v.Combobox(
             label=f"S{k + 1}: policy",
-            v_model=swarm.policy,
-            items=_KNOWN_POLICIES,
+            v_model=swarm["policy"],
+            items=_POLICY_NAMES,
             on_v_model=lambda policy: change(policy=policy or ""),
             class_="kswarms-policy",
         )
-        solara.InputInt("Share of the robots", swarm.share, on_value=lambda share: change(share=share))
-        _slider(f"Drive in P {swarm.drive:g}", swarm.drive, _DRIVE, lambda drive: change(drive=drive))
-        _slider(
-            f"Drive in A {swarm.drive_action:g}",
-            swarm.drive_action,
-            _DRIVE,
-            lambda drive: change(drive_action=drive),
-        )
+        solara.InputInt("Share of the robots", swarm["share"], on_value=lambda share: change(share=share))
+        for name, state in (("drive", "P"), ("drive_action", "A")):
+
+            def change_drive(drive: float, name: str = name) -> None:
+                change(**{name: drive})
+
+            _slider(f"Drive in {state} {swarm[name]:g}", swarm[name], _DRIVE, change_drive)
 
 
-def _learning(session: Session, act: Act) -> None:
-    form = session.form
-    learning = learning_of([swarm.policy for swarm in form.swarms])
+def _learning(session: Session, change: Callable[..., None], act: Act) -> None:
+    learning = learning_of([swarm["policy"] for swarm in session.form.swarms])
     if learning is None:
         return
 
-    def change(part: str, name: str = "", **arguments: float) -> None:
+    def change_learning(part: str, name: str = "", **arguments: float) -> None:
         act(lambda: session.change_learning(part, name, **arguments))
 
     def choose(label: str, part: str, known: Iterable[str], name: str) -> None:
         names = list(dict.fromkeys([*known, name]))
-        solara.Select(label, value=name, values=names, on_value=lambda name: change(part, name))
+        solara.Select(label, value=name, values=names, on_value=lambda name: change_learning(part, name))
 
     with solara.Details("Learning", expand=True):
         choose("Reward", "reward", REWARDS, learning.reward)
         if learning.delta is not None:
             label = f"Δ = {learning.delta:g}"
-            _slider(label, learning.delta, (0.0, 0.5, 0.005), lambda delta: change("reward", delta=delta))
+            scale = (0.0, 0.5, 0.005)
+            _slider(label, learning.delta, scale, lambda delta: change_learning("reward", delta=delta))
         choose("Selection rule", "rule", RULES, learning.rule)
         if learning.gamma is not None:
             label = f"γ = {learning.gamma:g}"
-            _slider(label, learning.gamma, (0.0, 1.0, 0.005), lambda gamma: change("rule", gamma=gamma))
+            scale = (0.0, 1.0, 0.005)
+            _slider(label, learning.gamma, scale, lambda gamma: change_learning("rule", gamma=gamma))
         solara.InputFloat(
             "Time to learn (s)",
-            form.learning,
-            on_value=lambda seconds: act(lambda: session.change(session.form._replace(learning=seconds))),
+            session.form.fields["learning"],
+            on_value=lambda seconds: change(learning=seconds),
         )
 
 
 def _world(session: Session, change: Callable[..., None], act: Act) -> None:
-    form = session.form
-    parameters: Parameters | None
+    fields = session.form.fields
     try:
-        parameters = parse_parameters(form.parameters)
+        parameters = dict(parse_parameters(fields["parameters"]))
     except InputError:
-        parameters = None  # the message above the arena says what is wrong with them
-    if parameters is not None:
-        for name, (label, scale) in _SLIDERS.items():
-            value = getattr(parameters, name)
+        parameters = {}  # the message above the arena describes the error
+    for name, (label, scale) in _SLIDERS.items():
 
-            def tell(value: float, name: str = name) -> None:
-                act(lambda: session.change_parameter(name, value))
+        def change_parameter(value: float, name: str = name) -> None:
+            act(lambda: session.change_parameter(name, value))
 
-            _slider(f"{label} {value:.4g}", value, scale, tell)
-    solara.InputText("Parameters", form.parameters, on_value=lambda text: change(parameters=text))
+        if name in parameters:
+            _slider(f"{label} {parameters[name]:.4g}", parameters[name], scale, change_parameter)
+    solara.InputText("Parameters", fields["parameters"], on_value=lambda text: change(parameters=text))
     solara.Select(
-        "Layout", value=form.layout, values=list(LAYOUTS), on_value=lambda name: change(layout=name)
+        "Layout", value=fields["layout"], values=list(LAYOUTS), on_value=lambda name: change(layout=name)
     )
-    solara.Select("Body", value=form.body, values=list(BODIES), on_value=lambda name: change(body=name))
-    solara.InputFloat("Length of the game (s)", form.duration, on_value=lambda s: change(duration=s))
-    solara.InputInt("Ends with this puck (0: none)", form.puck_limit, on_value=lambda n: change(puck_limit=n))
-    solara.InputInt("Pucks at a station (0: no end)", form.supply, on_value=lambda n: change(supply=n))
+    body = getattr(fields["body"], "name", fields["body"])
+    bodies = list(dict.fromkeys([*BODIES, body]))
+    solara.Select("Body", value=body, values=bodies, on_value=lambda name: change(body=name))
+    for kind, name, label in (
+        (solara.InputFloat, "side", "Side of the arena (m)"),
+        (solara.InputFloat, "duration", "Length of the game (s)"),
+        (solara.InputInt, "puck_limit", "Pucks that end the game (0: no limit)"),
+        (solara.InputInt, "supply", "Pucks at each station (0: no limit)"),
+    ):
+        kind(label, fields[name] or 0, on_value=lambda value, name=name: change(**{name: value}))

@@ -1,8 +1,8 @@
-"""What the controls of the page say: a game in the making, from which one that can be played is built."""
+"""Values of the page's controls, from which a game is built."""
 
-from typing import Any, Final, Literal, NamedTuple, Self
+from typing import Any, Literal, NamedTuple, Self
 
-from kswarms.agents.actions import Action
+from kswarms.agents.body import BODIES
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.learning.rewards import REWARDS
 from kswarms.agents.learning.selection_rules import RULES
@@ -12,93 +12,53 @@ from kswarms.model.description.parameters import parse_parameters, text_of
 from kswarms.scenarios.description.condition import Condition, SwarmRule
 
 
-class SwarmForm(NamedTuple):
-    """The controls of one swarm, as the fields of `kswarms.scenarios.description.condition.SwarmRule`."""
-
-    policy: str = "avoid"
-    share: int = 1
-    drive: float = 0.6
-    drive_action: float = 0.6
-
-
 class Form(NamedTuple):
-    """The controls of a game; what they say need not be allowed until `game` is called.
+    """Values of the controls. They may be invalid; `game` validates them.
 
     Attributes
     ----------
-    swarms : tuple of SwarmForm
-        S1 to SK.
+    swarms : tuple of dict
+        Fields of a `kswarms.scenarios.description.condition.SwarmRule` for each swarm.
+    fields : dict of str to object
+        Fields of a `kswarms.scenarios.description.condition.Condition`: parameters as text, body by name.
     n, seed : int
         Robots in all; seed.
-    layout, body, parameters, actions, learning, duration, multiple_of
-        As in `kswarms.scenarios.description.condition.Condition`.
-    puck_limit, supply : int
-        Likewise; 0 for no limit.
     absent, absent_from
-        As in `kswarms.model.description.game.Game`.
+        Fields of a `kswarms.model.description.game.Game`.
     """
 
-    swarms: tuple[SwarmForm, ...]
-    n: int = 20
-    seed: int = 0
-    layout: str = "symmetric"
-    body: str = "krembot-sim"
-    parameters: str = "fitted"
-    actions: tuple[Action, ...] = ()
-    learning: float = 0.0
-    duration: float = 600.0
-    puck_limit: int = 0
-    supply: int = 0
-    multiple_of: int | None = None
+    swarms: tuple[dict[str, Any], ...]
+    fields: dict[str, Any]
+    n: int
+    seed: int
     absent: tuple[int, ...] = ()
     absent_from: Literal["learning", "game"] = "learning"
 
     @classmethod
     def of_condition(cls, condition: Condition, n: int, seed: int) -> Self:
-        """Return the form of a curve of a scenario, for a number of robots and a seed."""
-        return cls(
-            swarms=tuple(SwarmForm(s.policy, s.share, s.drive, s.drive_action) for s in condition.swarms),
-            n=n,
-            seed=seed,
-            puck_limit=condition.puck_limit or 0,
-            supply=condition.supply or 0,
-            **{name: getattr(condition, name) for name in _SHARED}
-            | {"parameters": text_of(condition.parameters), "body": condition.body.name},
-        )
+        """Return the form of a condition with a number of robots and a seed."""
+        fields = condition.game_fields() | {"multiple_of": condition.multiple_of}
+        fields["parameters"] = text_of(condition.parameters)
+        if BODIES.get(condition.body.name) == condition.body:
+            fields["body"] = condition.body.name
+        return cls(tuple(rule.model_dump() for rule in condition.swarms), fields, n, seed)
 
     @classmethod
     def of_game(cls, game: Game, seed: int) -> Self:
-        """Return the form of a game, its sizes as shares."""
-        return cls(
-            swarms=tuple(SwarmForm(s.policy, s.size, s.drive, s.drive_action) for s in game.swarms),
-            n=game.size,
-            seed=seed,
-            layout=game.layout,
-            body=game.body.name,
-            parameters=text_of(game.parameters),
-            actions=game.actions,
-            learning=game.learning,
-            duration=game.duration,
-            puck_limit=game.puck_limit or 0,
-            supply=game.supply or 0,
-            absent=game.absent,
-            absent_from=game.absent_from,
-        )
+        """Return the form of a game; the sizes of its swarms become shares."""
+        rules = [SwarmRule(share=swarm.size, **swarm.model_dump(exclude={"size"})) for swarm in game.swarms]
+        form = cls.of_condition(Condition(swarms=tuple(rules), **game.game_fields()), game.size, seed)
+        return form._replace(absent=game.absent, absent_from=game.absent_from)
 
-    def condition(self) -> Condition:
-        """Return the curve of a scenario that this is.
+    def replace(self, **changes: Any) -> Self:
+        """Return the form with some values changed, of this class or of `fields`."""
+        own = {name: value for name, value in changes.items() if name in self._fields}
+        fields = {name: value for name, value in changes.items() if name not in own}
+        return self._replace(**{"fields": self.fields | fields, **own})
 
-        Raises
-        ------
-        InputError
-            If there is none.
-        """
-        return Condition(
-            swarms=tuple(SwarmRule(**swarm._asdict()) for swarm in self.swarms),
-            puck_limit=self.puck_limit or None,
-            supply=self.supply or None,
-            **{name: getattr(self, name) for name in _SHARED},
-        )
+    def replace_swarm(self, k: int, **changes: Any) -> Self:
+        """Return the form with some fields of a swarm (from 0) changed."""
+        return self._replace(swarms=(*self.swarms[:k], self.swarms[k] | changes, *self.swarms[k + 1 :]))
 
     def game(self) -> Game:
         """Return the game.
@@ -106,43 +66,35 @@ class Form(NamedTuple):
         Raises
         ------
         InputError
-            If there is none.
+            If a value is invalid.
         """
         if isinstance(self.seed, bool) or not isinstance(self.seed, int) or self.seed < 0:
             raise InputError("seed", self.seed, "must be a whole number ≥ 0")
-        game = self.condition().game(self.n)
+        rules = tuple(SwarmRule(**swarm) for swarm in self.swarms)
+        game = Condition(swarms=rules, **self.fields).game(self.n)
         return game.replace(absent=self.absent, absent_from=self.absent_from) if self.absent else game
-
-    def with_swarm(self, k: int, **changes: Any) -> Self:
-        """Return the form with some controls of a swarm (from 0) changed."""
-        swarms = [*self.swarms]
-        swarms[k] = swarms[k]._replace(**changes)
-        return self._replace(swarms=tuple(swarms))
-
-
-_SHARED: Final = ("layout", "body", "parameters", "actions", "learning", "duration", "multiple_of")
 
 
 def with_parameter(text: str, name: str, value: float) -> str:
-    """Return a text of parameters with one of them changed; not named where the preset has that value.
+    """Return the shortest text of parameters in which one parameter has another value.
 
     Raises
     ------
     InputError
-        If the text is of no parameters, or the value not allowed.
+        If the text cannot be parsed, or the value is invalid.
     """
     return text_of(parse_parameters(text).replace(**{name: value}))
 
 
 class Learning(NamedTuple):
-    """What the controls of learning show: of the first learner among the policies.
+    """How a learner learns.
 
     Attributes
     ----------
     reward, rule : str
         Names.
     delta, gamma : float, optional
-        Δ and γ; None where the reward or the rule has none, or Δ is one for each opponent.
+        Δ and γ; None if the reward or the rule has none, or Δ is set for each opponent.
     """
 
     reward: str

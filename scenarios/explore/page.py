@@ -1,7 +1,7 @@
-"""The page: the arena and its buttons, the controls at the side, the panels beside it.
+"""The page: the arena with its buttons, the controls at the side, the panels.
 
-One thread of each page lets its game run. It waits for the browser to have drawn a frame before it makes the
-next, so a slow browser sees fewer frames of the same game, never a growing delay.
+Each page has a thread that plays its game. It waits until the browser has drawn a frame before it sends the
+next, so a slow browser shows fewer frames and does not fall behind.
 """
 
 import threading
@@ -15,16 +15,17 @@ import solara
 from kswarms.scenarios.catalogue.selecting import FIRST_SCENARIO
 from kswarms.scenarios.explore.controls import Controls
 from kswarms.scenarios.explore.panels import Panels
-from kswarms.scenarios.explore.session import SPEEDS, Act, Session
+from kswarms.scenarios.explore.playback import SPEEDS
+from kswarms.scenarios.explore.session import Act, Session
 from kswarms.scenarios.explore.views import Json, frame_of, scene_of
 from kswarms.scenarios.runs.run import Run
 
 FASTEST: Final = 1 / 25
-"""Between two frames, at least (s)."""
+"""Minimum time between two frames (s)."""
 _PANELS_EVERY: Final = 0.5
-"""Between two looks of the panels at a game that runs (s)."""
-_GIVE_UP: Final = 1.0
-"""For how long a browser is waited for: one that shows another tab draws nothing (s)."""
+"""Time between two updates of the panels while the game runs (s)."""
+_DRAW_TIMEOUT: Final = 1.0
+"""Maximum time to wait for the browser; a hidden tab draws nothing (s)."""
 
 _STYLE: Final = """
 .kswarms-page { margin: 0; }
@@ -33,14 +34,14 @@ _STYLE: Final = """
 """
 
 start: str | Run = FIRST_SCENARIO
-"""What a new page begins with; the command line sets it."""
+"""Scenario or run of a new page, set by the command line."""
 
 
 class Beats:
-    """What tells the page that there is something new to show."""
+    """Signals that update parts of the page."""
 
     def __init__(self) -> None:
-        # A number of its own for each beat: two threads that add to one could both arrive at the same.
+        # A unique number for each beat: two threads that increment a value could set the same number.
         self._numbers = count(1)
         self.frame = solara.Reactive(0)
         self.panels = solara.Reactive(0)
@@ -49,25 +50,25 @@ class Beats:
         self.wake = threading.Event()
 
     def beat(self, *parts: solara.Reactive[int]) -> None:
-        """Have some parts of the page shown anew."""
+        """Update some parts of the page."""
         for part in parts:
             part.value = next(self._numbers)
 
     def changed(self) -> None:
-        """Have all of it shown anew."""
+        """Update the whole page."""
         self.beat(self.frame, self.panels, self.controls)
         self.wake.set()
 
 
-@solara.component_vue("arena.vue")
+@solara.component_vue("vue/arena.vue")
 def _Arena(
-    scene: Json, frame: Json, event_drawn: Callable[[int], None], event_choose: Callable[[int], None]
+    scene: Json, frame: Json, event_drawn: Callable[[int], None], event_select: Callable[[int], None]
 ) -> None:
-    """Draw the arena on a canvas of the browser."""
+    """Draw the arena on a canvas."""
 
 
 @solara.component
-def Page() -> None:  # components are written like classes, as solara has it
+def Page() -> None:
     """Show a game and its controls."""
     session = solara.use_memo(lambda: Session(start), [])
     beats = solara.use_memo(Beats, [])
@@ -92,15 +93,15 @@ def Page() -> None:  # components are written like classes, as solara has it
 
 @solara.component
 def Layout(children: list[Any]) -> None:
-    """Show the controls beside the page, or on a button where there is no room; solara asks for the name."""
-    # None leaves it to the browser; True, solara's default, would hide the arena of a narrow window.
+    """Show the controls beside the page, or behind a button on narrow screens; solara requires the name."""
+    # None lets the browser decide; solara's default, True, would hide the arena in a narrow window.
     solara.AppLayout(children=children, sidebar_open=None)
 
 
 def _run(session: Session, beats: Beats) -> Callable[[], None]:
-    """Start the thread that lets the game run; return what ends it."""
+    """Start the thread that plays the game; return a function that ends it."""
     over = threading.Event()
-    thread = threading.Thread(target=let_run, args=(session, beats, over), daemon=True)
+    thread = threading.Thread(target=play, args=(session, beats, over), daemon=True)
     thread.start()
 
     def end() -> None:
@@ -113,8 +114,8 @@ def _run(session: Session, beats: Beats) -> Callable[[], None]:
     return end
 
 
-def let_run(session: Session, beats: Beats, over: threading.Event) -> None:
-    """Let a game run, and have it shown, until it is over with the page."""
+def play(session: Session, beats: Beats, over: threading.Event) -> None:
+    """Play a game and update the page until `over` is set."""
     last = shown = time.monotonic()
     while not over.is_set():
         if not session.active:
@@ -123,7 +124,7 @@ def let_run(session: Session, beats: Beats, over: threading.Event) -> None:
             last = time.monotonic()
             continue
         now = time.monotonic()
-        # A pause of the machine does not make the game jump.
+        # Limited, so that the game does not jump after a pause of the machine.
         moved = session.tick(min(now - last, 0.25))
         last = now
         if moved:
@@ -134,7 +135,7 @@ def let_run(session: Session, beats: Beats, over: threading.Event) -> None:
             elif now - shown >= _PANELS_EVERY:
                 shown = now
                 beats.beat(beats.panels)
-            beats.drawn.wait(_GIVE_UP)
+            beats.drawn.wait(_DRAW_TIMEOUT)
         time.sleep(max(0.0, FASTEST - (time.monotonic() - now)))
 
 
@@ -145,9 +146,9 @@ def _ArenaView(session: Session, beats: Beats, act: Act) -> None:
     scene = solara.use_memo(lambda: scene_of(player), [player])
     _Arena(
         scene=scene,
-        frame=frame_of(player, number, session.chosen, session.show_sectors, session.show_sensors),
+        frame=frame_of(player, number, session.selected, session.show_sectors, session.show_sensors),
         event_drawn=lambda _: beats.drawn.set(),
-        event_choose=lambda robot: act(lambda: session.choose(robot)),
+        event_select=lambda robot: act(lambda: session.select(robot)),
     )
 
 
@@ -170,11 +171,11 @@ def _Transport(session: Session, beat: solara.Reactive[int], act: Act) -> None:
 
     with solara.Row(gap="6px", style={"flex-wrap": "wrap", "align-items": "center", "row-gap": "6px"}):
         button(
-            "Pause" if runs else "Play", "mdi-pause" if runs else "mdi-play", session.play, color="primary"
+            "Pause" if runs else "Play", "mdi-pause" if runs else "mdi-play", session.toggle, color="primary"
         )
         button("Step", "mdi-step-forward", session.step)
         button("Reset", "mdi-skip-backward", session.reset)
-        button("Next conflict", "mdi-target", session.next_conflict)
+        button("Next conflict", "mdi-target", lambda: session.next_conflict(session.selected))
         if player.time < 0:
             button("Skip learning", "mdi-fast-forward", lambda: session.go_to(0.0), color="secondary")
         button("To the end", "mdi-skip-forward", lambda: session.go_to(player.game.duration))

@@ -1,4 +1,4 @@
-"""The panels beside the arena: curves, the robot chosen, conflicts."""
+"""Panels beside the arena: charts, the selected robot, conflicts."""
 
 import math
 from collections.abc import Sequence
@@ -7,26 +7,26 @@ from typing import Final
 import solara
 
 from kswarms.scenarios.explore.session import Act, Session
-from kswarms.scenarios.explore.views import Json, curves_of
+from kswarms.scenarios.explore.views import Json, charts_of
 from kswarms.scenarios.watch.conflicts import HEADINGS, Arm, WatchedConflict, conflict_cells, format_number
 from kswarms.scenarios.watch.robot_view import RobotView
 
 _CONFLICTS_SHOWN: Final = 60
 
 
-@solara.component_vue("table.vue")
+@solara.component_vue("vue/table.vue")
 def _Table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """Show a table of texts; a star before a cell makes it bold."""
+    """Show a table of texts; cells that start with a star are bold."""
 
 
-@solara.component_vue("chart.vue")
+@solara.component_vue("vue/chart.vue")
 def _Chart(option: Json) -> None:
     """Draw a chart of ECharts."""
 
 
 @solara.component
 def Panels(session: Session, beat: solara.Reactive[int], act: Act) -> None:
-    """Show the panels, one at a time."""
+    """Show the panels as tabs."""
     tab = solara.use_reactive(0)
     with solara.v.Tabs(v_model=tab.value, on_v_model=tab.set, grow=True):
         for name in ("Curves", "Robot", "Conflicts"):
@@ -42,16 +42,16 @@ def Panels(session: Session, beat: solara.Reactive[int], act: Act) -> None:
 @solara.component
 def _Curves(session: Session, beat: solara.Reactive[int]) -> None:
     beat.get()
-    for heading, option in curves_of(session.player.history).items():
+    for heading, option in charts_of(session.player.history).items():
         solara.Text(heading, classes=["kswarms-heading"])
         _Chart(option=option)
 
 
-def _chooser(session: Session, act: Act) -> None:
+def _robot_input(session: Session, act: Act) -> None:
     solara.InputInt(
         f"Robot, 0 to {session.player.game.size - 1} (or click on one)",
-        session.chosen,
-        on_value=lambda robot: act(lambda: session.choose(robot)),
+        session.selected,
+        on_value=lambda robot: act(lambda: session.select(robot)),
         continuous_update=True,
     )
 
@@ -59,10 +59,10 @@ def _chooser(session: Session, act: Act) -> None:
 @solara.component
 def _Robot(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     beat.get()
-    _chooser(session, act)
-    view = session.player.view_robot(session.chosen)
+    _robot_input(session, act)
+    view = session.player.view_robot(session.selected)
     if view is None:
-        solara.Text(f"Robot {session.chosen} is absent.")
+        solara.Text(f"Robot {session.selected} is absent.")
         return
     _Table(header=["", ""], rows=_facts(view))
     solara.Text("Sensors: free distance (m), active ones bold", classes=["kswarms-heading"])
@@ -71,14 +71,15 @@ def _Robot(session: Session, beat: solara.Reactive[int], act: Act) -> None:
         rows=[[f"{'*' if sensor.active else ''}{sensor.free:z.2f}" for sensor in view.sensors]],
     )
     for opponent, arms in view.bandits.items():
-        whom = "its own swarm" if opponent == view.swarm else f"S{opponent}"
-        solara.Text(f"Bandit against {whom}", classes=["kswarms-heading"])
+        swarm = "its own swarm" if opponent == view.swarm else f"S{opponent}"
+        solara.Text(f"Bandit against {swarm}", classes=["kswarms-heading"])
         _Table(
             header=["action", "N(a)", "Q(a) = ΣR/ΣT", "√(γ ln N/N(a))", "bound"],
             rows=[_arm_row(arm) for arm in arms],
         )
     if view.bandits:
-        solara.Text(f"{view.rule}; {'learns' if view.learning else 'has learned: takes the greatest Q'}")
+        phase = "learns" if view.learning else "has learned: takes the action with the greatest Q"
+        solara.Text(f"{view.rule}; {phase}")
     else:
         solara.Text("It does not learn.")
 
@@ -87,7 +88,7 @@ def _facts(view: RobotView) -> list[list[str]]:
     swarms = range(1, len(view.t_a) + 1)
     return [
         ["robot", f"{view.robot} of S{view.swarm}, {view.policy}"],
-        ["doing", f"{view.doing}{', with a puck' if view.carrying else ''}"],
+        ["activity", f"{view.doing}{', with a puck' if view.carrying else ''}"],
         ["met last", view.opponent or "nobody"],
         ["pucks", str(view.pucks)],
         ["T(a) against", ", ".join(f"S{m}: {t:.1f} s" for m, t in zip(swarms, view.t_a, strict=True))],
@@ -97,18 +98,17 @@ def _facts(view: RobotView) -> list[list[str]]:
 
 
 def _arm_row(arm: Arm) -> list[str]:
-    numbers = (arm.q, arm.bound - arm.q, arm.bound)
-    return [arm.action, f"{arm.n:g}", *map(format_number, numbers)]
+    return [arm.action, f"{arm.n:g}", *map(format_number, (arm.q, arm.bound - arm.q, arm.bound))]
 
 
 @solara.component
 def _Conflicts(session: Session, beat: solara.Reactive[int], act: Act) -> None:
     beat.get()
-    everyone = solara.use_reactive(False)
-    _chooser(session, act)
-    solara.Checkbox(label="Those of all robots", value=everyone)
+    of_all = solara.use_reactive(False)
+    _robot_input(session, act)
+    solara.Checkbox(label="Conflicts of all robots", value=of_all)
     player = session.player
-    conflicts = player.latest_conflicts(None if everyone.value else session.chosen, _CONFLICTS_SHOWN)
+    conflicts = player.latest_conflicts(None if of_all.value else session.selected, _CONFLICTS_SHOWN)
     if not conflicts:
         solara.Text("No conflict has ended yet.")
         return
@@ -116,8 +116,16 @@ def _Conflicts(session: Session, beat: solara.Reactive[int], act: Act) -> None:
 
 
 _HEADER: Final = (
-    *("t (s)", "who →\nmet", "where\n(m)", "known:\nQ (N)", "chose\nR (s)"),
-    *("Q\nafter", "T(a)\n(s)", "T(p)\n(s)", "n′", "saw"),
+    "t (s)",
+    "who →\nmet",
+    "where\n(m)",
+    "known:\nQ (N)",
+    "chose\nR (s)",
+    "Q\nafter",
+    "T(a)\n(s)",
+    "T(p)\n(s)",
+    "n′",
+    "saw",
 )
 
 

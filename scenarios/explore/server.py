@@ -1,4 +1,4 @@
-"""Serves the page on this machine, without asking anything of another one."""
+"""Server of the page. It is reachable from this machine only and needs no network."""
 
 import os
 import socket
@@ -23,18 +23,18 @@ def serve(start: str | Run, port: int, open_browser: bool, ready: Callable[[str]
     Parameters
     ----------
     start : str or Run
-        What a new page begins with, as `kswarms.scenarios.explore.session.Session` takes it.
+        Scenario or run of a new page, as `kswarms.scenarios.explore.session.Session` takes it.
     port : int
-        Where; 0 for any that is free.
+        Port; 0 for any free port.
     open_browser : bool
         Whether to open the page in the browser.
     ready : callable
-        Told the address once the page can be opened.
+        Called with the address when the page can be opened.
 
     Raises
     ------
     InputError
-        If the port is taken.
+        If the port is not available.
     """
     with _listen(port) as listener:
         address = f"http://localhost:{listener.getsockname()[1]}"
@@ -62,13 +62,13 @@ def _listen(port: int) -> socket.socket:
 
 
 def _server(start: str | Run) -> "uvicorn.Server":
-    """Return the server of the page, set up to speak to this machine alone."""
+    """Return a server of the page that contacts no other machine."""
     os.environ["SOLARA_APP"] = "kswarms.scenarios.explore.page"
     import uvicorn
     from solara.server import settings
 
-    settings.telemetry.mixpanel_enable = False  # else it would tell its maker of each start
-    settings.main.mode = "production"  # else it would watch the files of the package for changes
+    settings.telemetry.mixpanel_enable = False  # no usage reports to the makers of solara
+    settings.main.mode = "production"  # do not watch the package for changes
     settings.theme.show_banner = False
     settings.theme.title = "kswarms explore"
     from solara.server.starlette import app

@@ -1,4 +1,4 @@
-"""The game as plain data for the browser: the arena's scene and frames, the curves' options."""
+"""The game as JSON for the browser: the scene and the frames of the arena, and the charts."""
 
 from collections.abc import Iterable, Sequence
 from typing import Any, Final
@@ -10,7 +10,7 @@ Json = dict[str, Any]
 
 
 def scene_of(player: Player) -> Json:
-    """Return what of the picture does not change during a game; lengths in metres, angles in radians."""
+    """Return the constant part of the drawing; lengths in metres, angles in radians."""
     model, game = player.model, player.game
     arena, body, parameters = model.arena, game.body, game.parameters
     return {
@@ -26,10 +26,10 @@ def scene_of(player: Player) -> Json:
     }
 
 
-def frame_of(player: Player, number: int, chosen: int, sectors: bool, sensors: bool) -> Json:
-    """Return what changes: positions to 0.1 mm, headings to 0.001 rad."""
+def frame_of(player: Player, number: int, selected: int, sectors: bool, sensors: bool) -> Json:
+    """Return the changing part of the drawing: positions to 0.1 mm, headings to 0.001 rad."""
     now = player.snapshot()
-    view = player.view_robot(chosen)
+    view = player.view_robot(selected)
     return {
         "number": number,
         "time": round(now.time, 3),
@@ -43,7 +43,7 @@ def frame_of(player: Player, number: int, chosen: int, sectors: bool, sensors: b
         "heading": now.heading.round(3).tolist(),
         "action": now.in_action.astype(int).tolist(),
         "puck": now.carrying.astype(int).tolist(),
-        "chosen": chosen,
+        "selected": selected,
         "sectors": sectors,
         "sensors": [list(sensor) for sensor in view.sensors] if view and sensors else None,
     }
@@ -51,13 +51,13 @@ def frame_of(player: Player, number: int, chosen: int, sectors: bool, sensors: b
 
 _DASHES: Final = ("solid", "dashed", "dotted")
 _SHORTEST_AXIS: Final = 10.0
-"""Of time, in a chart (s)."""
+"""Minimum length of the time axis of a chart (s)."""
 
 
-def curves_of(history: Sequence[Sample]) -> dict[str, Json]:
-    """Return, by the heading of each chart, its option for ECharts.
+def charts_of(history: Sequence[Sample]) -> dict[str, Json]:
+    """Return the options for ECharts of each chart, by heading.
 
-    What counts anew with the measured game is shown from there on once it has begun; what is learned, whole.
+    Once the measured game has begun, charts omit the learning phase, except the chart of what is learned.
     """
     everything = history
     if history[-1].time > 0:
@@ -65,26 +65,22 @@ def curves_of(history: Sequence[Sample]) -> dict[str, Json]:
     times = [sample.time for sample in history]
     began, now = times[0], times[-1]
 
-    def lines(what: str, columns: Iterable[Sequence[float]], dash: str = "solid") -> list[Json]:
+    def lines(columns: Iterable[Sequence[float]], suffix: str = "", dash: str = "solid") -> list[Json]:
         return [
-            _line(f"S{k + 1}{what}", k, times, values, dash)
+            _line(f"S{k + 1}{suffix}", k, times, values, dash)
             for k, values in enumerate(zip(*columns, strict=True))
         ]
 
+    inter = lines((sample.inter for sample in history), " inter")
+    intra = lines((sample.intra for sample in history), " intra", "dotted")
     charts = {
-        "Pucks": _chart(lines("", (sample.pucks for sample in history)), began, now),
-        "SUD (pucks)": _chart(lines("", (sample.sud for sample in history)), began, now),
-        "Share of time in conflict": _chart(
-            lines(" inter", (sample.inter for sample in history))
-            + lines(" intra", (sample.intra for sample in history), "dotted"),
-            began,
-            now,
-            most=1.0,
-        ),
+        "Pucks": _chart(lines(sample.pucks for sample in history), began, now),
+        "SUD (pucks)": _chart(lines(sample.sud for sample in history), began, now),
+        "Share of time in conflict": _chart(inter + intra, began, now, most=1.0),
     }
     learned = []
     for number, (own, other) in enumerate(everything[0].fights):
-        known = [sample for sample in everything if (own, other) in sample.fights]  # not if all have left
+        known = [sample for sample in everything if (own, other) in sample.fights]  # until all robots leave
         learned.append(
             _line(
                 f"S{own} against S{other}" if own != other else f"S{own} within",
@@ -113,15 +109,21 @@ def _line(name: str, swarm: int, times: Sequence[float], values: Sequence[float]
 
 
 def _chart(lines: list[Json], began: float, now: float, most: float | None = None) -> Json:
-    # Of one instant alone, or of none, ECharts would make an axis of its own.
     return {
         "animation": False,
         "grid": {"left": 48, "right": 28, "top": 34, "bottom": 36},
         "legend": {"top": 0, "itemWidth": 28, "type": "scroll"},
         "tooltip": {"trigger": "axis"},
-        "xAxis": {"type": "value", "name": "t (s)", "nameLocation": "middle", "nameGap": 22}
-        | {"min": began, "max": max(now, began + _SHORTEST_AXIS), "axisLabel": {"hideOverlap": True}},
-        # Pucks are whole.
+        "xAxis": {
+            "type": "value",
+            "name": "t (s)",
+            "nameLocation": "middle",
+            "nameGap": 22,
+            "min": began,
+            "max": max(now, began + _SHORTEST_AXIS),  # ECharts ignores the limits of an empty axis
+            "axisLabel": {"hideOverlap": True},
+        },
+        # Numbers of pucks are integers.
         "yAxis": {"type": "value"} | ({"max": most, "min": 0} if most else {"minInterval": 1}),
         "series": lines,
     }

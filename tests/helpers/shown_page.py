@@ -1,6 +1,6 @@
-"""The page of `kswarms explore`, rendered without a browser: its widgets are found and used as a user would.
+"""The page of `kswarms explore`, rendered without a browser, and ways to use its widgets.
 
-Needs the extra `explore`: whoever imports it has looked for solara before.
+It needs the extra `explore`; tests that import it skip themselves without solara.
 """
 
 import time
@@ -46,21 +46,21 @@ class Shown:
         return " ".join(each.strip() for each in (label, *inner) if isinstance(each, str) and each)
 
     def texts(self) -> str:
-        """Return all text on the page, but that which Vue components have."""
+        """Return all text on the page, except the text in Vue components."""
         return " | ".join(filter(None, map(self.text_of, self.widgets())))
 
     def find(self, kind: type[Any], text: str) -> Any:
-        """Return the first widget of a kind whose text begins so."""
+        """Return the first widget of a kind whose text starts with `text`."""
         return next(w for w in self.widgets() if isinstance(w, kind) and self.text_of(w).startswith(text))
 
     def click(self, text: str) -> None:
         self.find(ipyvuetify.Btn, text).fire_event("click", {})
 
     def write(self, text: str, value: object) -> None:
-        """Write into a field, and leave it."""
+        """Write into a field and leave it."""
         field = self.find(ipyvuetify.TextField, text)
         field.v_model = str(value)
-        if field._event_handlers_map:  # else it takes each letter at once
+        if field._event_handlers_map:  # otherwise it reports every letter
             field.fire_event("focusout", {})
 
     def open(self, tab: int) -> None:
@@ -74,9 +74,9 @@ class Shown:
 
 
 def showing(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str | Run], Shown]]:
-    """Yield what shows a page; close all pages shown afterwards."""
+    """Yield a function that shows a page; close all pages afterwards."""
     shown: list[Shown] = []
-    monkeypatch.setattr(page, "_GIVE_UP", 0.02)  # there is no browser that would draw
+    monkeypatch.setattr(page, "_DRAW_TIMEOUT", 0.02)  # no browser draws
 
     def render(start: str | Run) -> Shown:
         session = Session(start)
@@ -89,16 +89,16 @@ def showing(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str | Run], S
         each.context.close()
 
 
-def wait(for_this: Callable[[], bool]) -> None:
-    """Wait for what the thread of a page does."""
-    patience = time.monotonic() + 10.0
-    while not for_this():
-        assert time.monotonic() < patience
+def wait(condition: Callable[[], bool]) -> None:
+    """Wait until the thread of a page has done something."""
+    deadline = time.monotonic() + 10.0
+    while not condition():
+        assert time.monotonic() < deadline
         time.sleep(0.01)
 
 
 def unfold(shown: Shown, heading: str) -> None:
-    """Open a part of the controls that is folded."""
+    """Open the folded parts of the controls."""
     panels = [w for w in shown.widgets() if isinstance(w, ipyvuetify.ExpansionPanels)]
     for panel in panels:
         panel.v_model = 0

@@ -1,4 +1,4 @@
-"""The page in a real browser: it loads, plays, changes, and asks nothing of any other machine."""
+"""The page in a browser: it loads, plays, changes, and contacts no other machine."""
 
 import json
 import os
@@ -33,17 +33,16 @@ pytestmark = [
 ]
 
 PATIENCE = 40.0
-"""For anything the page does (s): other programs may use the machine."""
+"""Timeout of every wait (s), generous for a busy machine."""
 
 
 @contextmanager
 def served(*arguments: str) -> Iterator[str]:
-    """Start the command and give the address that it prints."""
+    """Start the command and yield the address that it prints."""
     code = "from kswarms.scenarios.cli import main; main()"
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path)}
-    command = [sys.executable, "-W", "error::DeprecationWarning:scenarios", "-c", code]
     server = subprocess.Popen(
-        [*command, "explore", *arguments, "--no-browser", "--port", "0"],
+        [sys.executable, "-c", code, "explore", *arguments, "--no-browser", "--port", "0"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -89,7 +88,7 @@ class Browser:
         self.wait(lambda: self.all("[data-test=time]"))
 
     def all(self, selector: str, text: str = "") -> list[Any]:
-        # At one instant: of elements asked one by one, some would be gone by then.
+        # In one script: elements that are queried one by one may be gone by then.
         return list(
             self.driver.execute_script(
                 "return [...document.querySelectorAll(arguments[0])]"
@@ -116,7 +115,7 @@ class Browser:
         return self.text("[data-test=time]")
 
     def on_top(self, element: Any) -> bool:
-        """Return whether nothing else is over an element."""
+        """Return whether no other element covers an element."""
         return bool(
             self.driver.execute_script(
                 "const box = arguments[0].getBoundingClientRect();"
@@ -129,34 +128,34 @@ class Browser:
     def frames(self) -> int:
         return int(self.driver.execute_script("return window.kswarmsFrames"))
 
-    def wait(self, for_this: Callable[[], Any]) -> None:
+    def wait(self, condition: Callable[[], Any]) -> None:
         end = time.monotonic() + PATIENCE
-        while not for_this():
+        while not condition():
             assert time.monotonic() < end, self.driver.find_element("tag name", "body").text
             time.sleep(0.05)
 
     def complaints(self) -> list[str]:
-        """Return what the console has of errors and warnings."""
+        """Return the errors and warnings of the console."""
         entries = [
             entry["message"]
             for entry in self.driver.get_log("browser")
             if entry["level"] in ("SEVERE", "WARNING")
         ]
-        # One is none of ours: solara's own navigator.vue says `modules.export` for `module.exports`.
+        # One comes from solara: its navigator.vue has `modules.export` for `module.exports`.
         navigator = [entry for entry in entries if "Failed to evaluate Vue script and find module" in entry]
         assert len(navigator) <= 1
         return [entry for entry in entries if entry not in navigator]
 
     def requests(self) -> list[str]:
-        """Return the addresses that the page asked for, over HTTP and otherwise."""
-        asked = []
+        """Return the addresses that the page requested, over HTTP and WebSocket."""
+        requested = []
         for entry in self.driver.get_log("performance"):
             message = json.loads(entry["message"])["message"]
             if message["method"] == "Network.requestWillBeSent":
-                asked.append(message["params"]["request"]["url"])
+                requested.append(message["params"]["request"]["url"])
             elif message["method"] == "Network.webSocketCreated":
-                asked.append(message["params"]["url"])
-        return asked
+                requested.append(message["params"]["url"])
+        return requested
 
 
 @pytest.fixture
@@ -199,14 +198,14 @@ def test_the_page_plays_changes_and_shows_a_learner(browse: Callable[..., Browse
     browser.wait(lambda: not browser.all("label", "Robots N = 20"))
     browser.wait(lambda: browser.time() == "learning, 3000.0 s to the game")
 
-    # A click on the canvas chooses the robot that is there.
+    # A click on the canvas selects the robot under it.
     canvas = browser.all("canvas")[0]
-    chosen = browser.text(".kswarms-table td", " of S")
+    selected = browser.text(".kswarms-table td", " of S")
     for x in range(-150, 151, 30):
         webdriver.ActionChains(browser.driver).move_to_element_with_offset(
             canvas, x, x // 2
         ).click().perform()
-    browser.wait(lambda: browser.text(".kswarms-table td", " of S") != chosen)
+    browser.wait(lambda: browser.text(".kswarms-table td", " of S") != selected)
 
     assert browser.complaints() == []
     requests = [url for url in browser.requests() if not url.startswith("data:")]
@@ -215,7 +214,7 @@ def test_the_page_plays_changes_and_shows_a_learner(browse: Callable[..., Browse
     assert [url for url in requests if url.split("/")[2] != host] == []
 
 
-def test_a_mistake_is_told_in_the_page(browse: Callable[..., Browser]) -> None:
+def test_an_invalid_control_is_reported_on_the_page(browse: Callable[..., Browser]) -> None:
     browser = browse()
     field = next(f for f in browser.all("input") if f.get_attribute("value") == "attack")
     field.send_keys("x\n")
@@ -223,27 +222,27 @@ def test_a_mistake_is_told_in_the_page(browse: Callable[..., Browser]) -> None:
     assert browser.complaints() == []
 
 
-def test_a_run_is_watched_by_its_name_without_the_robot_that_is_absent(
+def test_a_recorded_run_with_an_absent_robot_is_watched(
     browse: Callable[..., Browser], tmp_path: Path
 ) -> None:
-    asked = f"contribution fig-6.4b --n 6 --robots 3 --seeds 1 --first-seed 5 --jobs 1 --out {tmp_path}"
-    assert invoke(asked.split()) == 0
+    command = f"contribution fig-6.4b --n 6 --robots 3 --seeds 1 --first-seed 5 --jobs 1 --out {tmp_path}"
+    assert invoke(command.split()) == 0
     (row,) = pq.read_table(tmp_path / "contribution.parquet").to_pylist()
     with served("--run", row["run_without"], str(tmp_path)) as address:
         browser = browse((1400, 900), address)
         values = [field.get_attribute("value") for field in browser.all("input")]
         assert f"run {row['run_without']}" in values
-        assert values[values.index("5") + 1] == "3"  # the seed, and who is absent
+        assert values[values.index("5") + 1] == "3"  # the seed, and the absent robots
         browser.click(".v-tab", "robot")
         browser.wait(lambda: browser.text(".kswarms-table td", " of S") == "4 of S2, inter-learner")
-        chooser = next(field for field in browser.all("input") if field.get_attribute("value") == "4")
-        chooser.send_keys(webdriver.Keys.BACKSPACE + "3\n")
+        robot_field = next(field for field in browser.all("input") if field.get_attribute("value") == "4")
+        robot_field.send_keys(webdriver.Keys.BACKSPACE + "3\n")
         browser.wait(lambda: browser.all(".kswarms-page span", "Robot 3 is absent."))
-        chooser.send_keys(webdriver.Keys.BACKSPACE + "4\n")
+        robot_field.send_keys(webdriver.Keys.BACKSPACE + "4\n")
         browser.click("button", "skip learning")
         browser.wait(lambda: browser.time().startswith("t ="))
 
-        # Beside the arena there is room for who, where, what was known, what was chosen and what it earned.
+        # The first five columns fit beside the arena.
         browser.click(".v-tab", "conflicts")
         browser.wait(lambda: browser.all(".kswarms-table th", "chose"))
         browser.wait(lambda: browser.all(".kswarms-table td", "fight"))
@@ -258,7 +257,7 @@ def test_a_run_is_watched_by_its_name_without_the_robot_that_is_absent(
         assert browser.complaints() == []
 
 
-def test_a_narrow_window_has_everything_below_each_other(browse: Callable[..., Browser]) -> None:
+def test_a_narrow_window_has_a_single_column(browse: Callable[..., Browser]) -> None:
     browser = browse((420, 900))
     width = browser.driver.execute_script("return document.documentElement.clientWidth")
     farthest = browser.driver.execute_script(

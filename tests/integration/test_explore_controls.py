@@ -1,4 +1,4 @@
-"""The controls of the page, without a browser: each changes the game, and a mistake is told in a line."""
+"""The controls of the page, without a browser: each changes the game and reports invalid values."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -7,7 +7,7 @@ import pytest
 
 pytest.importorskip("solara", reason="needs the extra `explore`")
 
-import ipyvuetify  # which comes with solara
+import ipyvuetify  # comes with solara
 
 from kswarms.agents.learning.selection_rules import UCB
 from tests.helpers.shown_page import Shown, unfold, wait
@@ -32,7 +32,7 @@ def test_learning_can_be_skipped_and_its_controls_change_it(show: Callable[[str]
     assert session.player.game.swarms[1].policy == "inter-learner(reward='individual', rule='greedy')"
 
 
-def test_what_a_slider_cannot_show_stays_until_it_is_moved(
+def test_a_value_between_two_steps_of_a_slider_is_kept(
     show: Callable[[str], Shown], tmp_path: Path
 ) -> None:
     (tmp_path / "off.toml").write_text(
@@ -48,19 +48,19 @@ def test_what_a_slider_cannot_show_stays_until_it_is_moved(
     )
     shown = show(str(tmp_path / "off.toml"))
     described = shown.session.form
-    # What Vuetify reports as soon as it has drawn them.
+    # Vuetify reports these values when it has drawn the sliders.
     for label, nearest in (("Drive in P 0.63", 0.65), ("γ", 0.12), ("Friction", 0.12)):
         shown.find(ipyvuetify.Slider, label).v_model = nearest
     assert shown.session.form == described
     shown.find(ipyvuetify.Slider, "γ").v_model = 0.2
-    assert shown.session.form.swarms[1].policy == "inter-learner(rule='ucb(gamma=0.2)')"
+    assert shown.session.form.swarms[1]["policy"] == "inter-learner(rule='ucb(gamma=0.2)')"
 
 
 def test_every_control_changes_the_game(show: Callable[[str], Shown]) -> None:
     shown = show("fig-6.10a")
     session = shown.session
-    shown.find(ipyvuetify.Select, "Condition").v_model = list(session.curves)[1]
-    assert session.curve == list(session.curves)[1]
+    shown.find(ipyvuetify.Select, "Condition").v_model = list(session.conditions)[1]
+    assert session.condition == list(session.conditions)[1]
     shown.find(ipyvuetify.Slider, "Robots N").v_model = 8
     shown.write("Seed", 5)
     shown.find(ipyvuetify.Combobox, "S1: policy").v_model = "random"
@@ -75,26 +75,28 @@ def test_every_control_changes_the_game(show: Callable[[str], Shown]) -> None:
     shown.click("Remove S3")
     player = session.player
     shown.find(ipyvuetify.TextField, "Seed").fire_event("focusout", {})
-    assert session.player is player  # nothing was written
+    assert session.player is player  # nothing was changed
     shown.find(ipyvuetify.Combobox, "Scenario").v_model = "fig-6.1a"
-    assert session.curves.keys() == {""}
+    assert session.conditions.keys() == {""}
     assert session.player.game.swarms[1].policy == "avoid"
 
 
-def test_the_world_can_be_changed_by_sliders_and_in_words(show: Callable[[str], Shown]) -> None:
+def test_the_world_can_be_changed_by_sliders_and_text(show: Callable[[str], Shown]) -> None:
     shown = show("fig-6.1c")
     session = shown.session
     unfold(shown, "World")
     shown.find(ipyvuetify.Slider, "Friction").v_model = 0.5
     shown.find(ipyvuetify.Slider, "Fight (s)").v_model = 2.0
-    assert session.form.parameters == "fitted, fight_duration=2.0, friction=0.5"
+    assert session.form.fields["parameters"] == "fitted, fight_duration=2.0, friction=0.5"
     assert session.player.game.parameters.friction == 0.5
     shown.find(ipyvuetify.Select, "Layout").v_model = "nearer-station"
+    shown.write("Side of the arena", 3.0)
     shown.write("Length of the game", 20.0)
-    shown.write("Ends with this puck", 3)
-    shown.write("Pucks at a station", 9)
+    shown.write("Pucks that end the game", 3)
+    shown.write("Pucks at each station", 9)
     game = session.player.game
-    assert (game.layout, game.duration, game.puck_limit, game.supply) == ("nearer-station", 20.0, 3, 9)
+    assert (game.layout, game.side, game.duration) == ("nearer-station", 3.0, 20.0)
+    assert (game.puck_limit, game.supply) == (3, 9)
     shown.write("Parameters", "fited")
     assert "parameters='fited': must begin with one of fitted, argos" in shown.texts()
     assert session.player.game == game
@@ -105,7 +107,7 @@ def test_the_world_can_be_changed_by_sliders_and_in_words(show: Callable[[str], 
     assert session.player.game.body.name == "krembot"
 
 
-def test_a_mistake_is_one_line_on_the_page(show: Callable[[str], Shown]) -> None:
+def test_an_invalid_value_is_one_line_on_the_page(show: Callable[[str], Shown]) -> None:
     shown = show("fig-6.1c")
     shown.find(ipyvuetify.Combobox, "S2: policy").v_model = "atack"
     assert "policy='atack': must be one of avoid" in shown.texts()

@@ -1,4 +1,4 @@
-"""The page, rendered without a browser: it plays and shows its game, and lets it go."""
+"""The page, rendered without a browser: it plays, shows and releases its game."""
 
 import gc
 import socket
@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("solara", reason="needs the extra `explore`")
 
-import ipyvuetify  # which comes with solara
+import ipyvuetify  # comes with solara
 
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.learning.selection_rules import UCB
@@ -27,7 +27,7 @@ def test_the_page_shows_the_arena_the_controls_and_the_curves(show: Callable[[st
     texts = shown.texts()
     for text in ("Play", "Robots N = 20", "S1: policy", "S2: policy", "Pucks", "SUD (pucks)", "World"):
         assert text in texts
-    assert "Skip learning" not in texts  # nobody learns
+    assert "Skip learning" not in texts  # no learners
     assert "Δ" not in texts
 
 
@@ -44,7 +44,7 @@ def test_buttons_play_step_and_reset_the_game(show: Callable[[str], Shown]) -> N
     shown.click("Reset")
     wait(lambda: shown.arena().frame["time"] == 0.0)
     shown.click("Next conflict")
-    wait(lambda: shown.arena().frame["action"][session.chosen] == 1)
+    wait(lambda: shown.arena().frame["action"][session.selected] == 1)
     shown.find(ipyvuetify.Select, "Speed").v_model = 100
     assert session.speed == 100
     shown.click("To the end")
@@ -53,7 +53,7 @@ def test_buttons_play_step_and_reset_the_game(show: Callable[[str], Shown]) -> N
     wait(lambda: shown.arena().frame["time"] == 30.0)
 
 
-def test_a_page_whose_browser_is_away_plays_on_slowly(
+def test_a_page_without_a_browser_plays_on_slowly(
     show: Callable[[str], Shown], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(page, "_PANELS_EVERY", 0.05)
@@ -61,11 +61,11 @@ def test_a_page_whose_browser_is_away_plays_on_slowly(
     shown.click("Play")
     wait(lambda: shown.session.player.time > 2.0)
     frame = shown.arena()
-    frame.vue_drawn(frame.frame["number"])  # what a browser does
+    frame.vue_drawn(frame.frame["number"])  # as a browser does
     shown.click("Pause")
 
 
-def test_who_is_absent_is_told_and_can_come_back(show: Callable[[str | Run], Shown]) -> None:
+def test_absent_robots_are_shown_and_can_be_added(show: Callable[[str | Run], Shown]) -> None:
     game = CATALOGUE["fig-6.4b"].game("", 6).replace(absent=(0, 3), absent_from="game")
     shown = show(Run(digest(game, 2), game, 2, (("fig-6.4b", ""),)))
     session = shown.session
@@ -82,26 +82,26 @@ def test_who_is_absent_is_told_and_can_come_back(show: Callable[[str | Run], Sho
     wait(lambda: "Absent robots" not in shown.texts())
 
 
-def test_a_robot_can_be_chosen_and_looked_into(show: Callable[[str], Shown]) -> None:
+def test_a_robot_can_be_selected_and_inspected(show: Callable[[str], Shown]) -> None:
     shown = show("fig-6.4b")
     session = shown.session
     session.player.advance(60.0)
-    assert session.chosen == 10  # the first that learns
+    assert session.selected == 10  # the first learner
     shown.open(1)
     facts, sensors, bandit = shown.tables()
     assert facts.rows[0] == ["robot", "10 of S2, inter-learner"]
     assert len(sensors.rows[0]) == 8
     assert [row[0] for row in bandit.rows] == ["flight", "fight"]
     assert f"{UCB()!r}; learns" in shown.texts()
-    shown.arena().vue_choose(0)
-    assert (session.chosen, shown.arena().frame["chosen"]) == (0, 0)
+    shown.arena().vue_select(0)
+    assert (session.selected, shown.arena().frame["selected"]) == (0, 0)
     assert shown.tables()[0].rows[0] == ["robot", "0 of S1, attack"]
     assert "It does not learn." in shown.texts()
     shown.write("Robot, 0 to 19", 99)
-    assert session.chosen == 19
+    assert session.selected == 19
 
 
-def test_conflicts_are_listed_with_what_was_known(show: Callable[[str], Shown]) -> None:
+def test_conflicts_are_listed_with_the_knowledge_of_the_robot(show: Callable[[str], Shown]) -> None:
     shown = show("fig-6.4b")
     shown.open(2)
     assert "No conflict has ended yet." in shown.texts()
@@ -111,7 +111,7 @@ def test_conflicts_are_listed_with_what_was_known(show: Callable[[str], Shown]) 
     assert {row[1].split(" →")[0] for row in own} == {"10 of S2"}
     assert any(row[3].startswith("flight ") for row in own)
     assert {row[4].split("\n")[0] for row in own} == {"flight", "fight"}
-    shown.find(ipyvuetify.Checkbox, "Those of all robots").v_model = True
+    shown.find(ipyvuetify.Checkbox, "Conflicts of all robots").v_model = True
     assert len({row[1] for row in shown.tables()[0].rows}) > 1
 
 
@@ -125,53 +125,55 @@ def test_the_drawing_has_conflict_sectors_on_demand(show: Callable[[str], Shown]
     assert shown.arena().frame["sensors"] is None
 
 
-def test_what_runs_is_shown_frame_by_frame_and_the_panels_less_often(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(page, "_GIVE_UP", 0.0)
+def test_a_running_game_is_shown_frame_by_frame_and_the_panels_less_often(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(page, "_DRAW_TIMEOUT", 0.0)
     monkeypatch.setattr(page, "_PANELS_EVERY", 0.2)
     session, beats, over = Session("fig-6.1c"), page.Beats(), threading.Event()
     seen: list[float] = []
     panels: list[float] = []
     beats.frame.subscribe(lambda _: seen.append(session.player.time))
     beats.panels.subscribe(lambda _: panels.append(session.player.time))
-    session.change(session.form._replace(duration=8.0))
+    session.change(duration=8.0)
 
     def begin() -> None:
-        session.play()
+        session.toggle()
         beats.wake.set()
 
     def end(number: int) -> None:
         over.set()
         beats.wake.set()
 
-    beats.controls.subscribe(end)  # which beats when the game has ended
+    beats.controls.subscribe(end)  # updated when the game has ended
     threading.Timer(0.05, begin).start()
-    page.let_run(session, beats, over)
+    page.play(session, beats, over)
     assert seen == sorted(seen)
     assert seen[-1] == 8.0
     assert 0 < len(panels) < len(seen)
 
 
-# solara's server still imports it; the version that it asks for has it.
+# The server of solara imports it.
 @pytest.mark.filterwarnings("ignore:websockets.legacy is deprecated:DeprecationWarning")
-def test_a_page_is_served_where_it_is_said_to_be(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_page_is_served_at_the_printed_address(monkeypatch: pytest.MonkeyPatch) -> None:
     import uvicorn
     from solara.server import settings
 
     from kswarms.scenarios.explore import server
 
-    told, opened = threading.Event(), threading.Event()
+    announced, opened = threading.Event(), threading.Event()
     lines: list[str] = []
 
     def run(own: uvicorn.Server, sockets: list[socket.socket]) -> None:
         own.started = True
-        assert told.wait(10)
+        assert announced.wait(10)
         assert opened.wait(10)
         (listener,) = sockets
         assert lines == [f"http://localhost:{listener.getsockname()[1]}"]
 
     def ready(address: str) -> None:
         lines.append(address)
-        told.set()
+        announced.set()
 
     monkeypatch.setattr(uvicorn.Server, "run", run)
     monkeypatch.setattr(server.webbrowser, "open", lambda address: opened.set())

@@ -1,4 +1,4 @@
-"""Games that some robots are absent from, in the page: each robot keeps its number, whatever row it has."""
+"""The page with absent robots: a robot keeps its number, whatever its row in the state arrays."""
 
 import math
 
@@ -7,7 +7,7 @@ import pytest
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.game_model import GameModel
 from kswarms.scenarios.explore.session import Session
-from kswarms.scenarios.explore.views import curves_of, frame_of
+from kswarms.scenarios.explore.views import charts_of, frame_of
 from kswarms.scenarios.runs.run import Run, digest
 from kswarms.scenarios.watch.conflicts import conflicts_of
 from kswarms.scenarios.watch.player import Player
@@ -22,13 +22,13 @@ def _run(game: Game, seed: int = 0) -> Run:
     return Run(digest(game, seed), game, seed, (("mine", ""),))
 
 
-def test_robots_are_drawn_and_looked_into_by_their_numbers() -> None:
+def test_robots_are_drawn_and_viewed_by_number() -> None:
     player = Player(NEVER, 0)
-    picture = player.snapshot()
-    assert picture.robots == (0, 2, 3, 5, 6, 7)
-    assert picture.swarm.tolist() == [0, 0, 0, 1, 1, 1]
+    now = player.snapshot()
+    assert now.robots == (0, 2, 3, 5, 6, 7)
+    assert now.swarm.tolist() == [0, 0, 0, 1, 1, 1]
     assert player.view_robot(1) is player.view_robot(4) is player.view_robot(8) is None
-    for number, robot in zip(picture.robots, player.model.robots, strict=True):
+    for number, robot in zip(now.robots, player.model.robots, strict=True):
         view = player.view_robot(number)
         assert view is not None
         assert (view.robot, view.swarm, view.policy) == (number, robot.swarm + 1, robot.policy_name)
@@ -39,19 +39,19 @@ def test_robots_are_drawn_and_looked_into_by_their_numbers() -> None:
     assert frame_of(player, 1, 4, sectors=False, sensors=True)["sensors"] is None
 
 
-def test_who_was_met_last_has_its_number() -> None:
+def test_the_robot_met_last_is_named_by_number() -> None:
     model = GameModel(NEVER, 0, record="conflicts")
     model.play()
     table = model.tables()["conflicts"]
     met = dict(zip(table["robot"], zip(table["opponent"], table["opponent_swarm"], strict=True), strict=True))
-    assert any(opponent > 1 for opponent, _ in met.values())  # whose row is another than its number
+    assert any(opponent > 1 for opponent, _ in met.values())  # its row differs from its number
     for robot, (opponent, swarm) in met.items():
         view = view_robot(model, robot)
         assert view is not None
         assert view.opponent == f"robot {opponent} of S{swarm}"
 
 
-def test_the_next_conflict_is_that_of_the_number_and_an_absent_robot_has_none() -> None:
+def test_the_next_conflict_is_found_by_number_and_an_absent_robot_has_none() -> None:
     player = Player(NEVER, 0)
     player.to_next_conflict(4)
     assert player.time == -40.0
@@ -59,7 +59,7 @@ def test_the_next_conflict_is_that_of_the_number_and_an_absent_robot_has_none() 
     assert player.snapshot().in_action[player.snapshot().robots.index(7)]
 
 
-def test_who_leaves_is_watched_until_it_does() -> None:
+def test_a_robot_that_leaves_is_followed_until_it_leaves() -> None:
     player = Player(LEAVING, 0)
     while player.time < 0:
         player.to_next_conflict(6)
@@ -70,30 +70,30 @@ def test_who_leaves_is_watched_until_it_does() -> None:
     assert len(player.snapshot().robots) == 8
 
 
-def test_curves_of_those_who_left_end_when_they_do() -> None:
+def test_the_lines_of_robots_that_left_end_when_they_leave() -> None:
     player = Player(LEAVING, 0)
     player.seek(20.0)
-    charts = curves_of(player.history)
+    charts = charts_of(player.history)
     (learned,) = charts.pop("Share of learners whose best action is to fight")["series"]
     times = [time for time, _ in learned["data"]]
     assert (times[0], times[-1] < 0) == (-40.0, True)
     assert all(chart["series"][0]["data"][-1][0] == 20.0 for chart in charts.values())
 
 
-def test_conflicts_are_told_by_number_with_what_that_robot_knew() -> None:
-    accounts = conflicts_of(_run(NEVER))
-    assert {account.row["robot"] for account in accounts} <= {0, 2, 3, 5, 6, 7}
-    learned = [each for each in accounts if each.row["robot"] == 7 and not math.isnan(each.row["reward"])]
+def test_conflicts_name_robots_by_number_with_their_knowledge() -> None:
+    conflicts = conflicts_of(_run(NEVER))
+    assert {conflict.row["robot"] for conflict in conflicts} <= {0, 2, 3, 5, 6, 7}
+    learned = [each for each in conflicts if each.row["robot"] == 7 and not math.isnan(each.row["reward"])]
     assert learned
     assert all(each.known for each in learned)
     assert [sum(arm.n for arm in each.known) for each in learned] == list(range(len(learned)))
 
 
-def test_a_session_of_such_a_run_plays_it_and_can_have_them_back() -> None:
+def test_a_session_plays_a_run_with_absent_robots_and_can_add_them() -> None:
     session = Session(_run(NEVER, 3))
     assert session.player.game == NEVER
-    assert session.chosen == 5  # the first learner who is there
-    session.change(session.form._replace(seed=4))
+    assert session.selected == 5  # the first learner present
+    session.change(seed=4)
     assert (session.error, session.player.game.absent) == ("", (1, 4))
     session.change_absent("7, 0")
     assert session.player.game.absent == (0, 7)
@@ -106,7 +106,7 @@ def test_a_session_of_such_a_run_plays_it_and_can_have_them_back() -> None:
 
 
 @pytest.mark.parametrize("game", [NEVER, LEAVING])
-def test_a_game_watched_is_the_game_played(game: Game) -> None:
+def test_a_watched_game_equals_a_played_game(game: Game) -> None:
     player = Player(game, 2)
     while not player.ended:
         player.advance(3.0)

@@ -1,25 +1,20 @@
-"""The controls of the page as data: from scenarios and games to forms and back."""
+"""Forms: values of controls from scenarios and games, and back."""
+
+from typing import Any
 
 import pytest
 
+from kswarms.agents.actions import AWAY, TOWARDS, Action
+from kswarms.agents.body import Body
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.policies.editing import with_learning
-from kswarms.agents.user_code.syntax import parse_call
 from kswarms.model.description.parameters import PRESETS
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.description.scenario import Scenario
-from kswarms.scenarios.explore.form import (
-    Form,
-    SwarmForm,
-    learning_of,
-    with_parameter,
-)
-
-PAIR = (SwarmForm("avoid"), SwarmForm("attack"))
+from kswarms.scenarios.explore.form import Form, learning_of, with_parameter
 
 
 @pytest.mark.parametrize("scenario", CATALOGUE.values(), ids=CATALOGUE)
-def test_the_form_of_a_curve_and_that_of_its_game_both_give_the_game(scenario: Scenario) -> None:
+def test_the_forms_of_a_condition_and_of_its_game_give_the_game(scenario: Scenario) -> None:
     for condition in scenario.conditions:
         n = scenario.densities[0]
         game = condition.game(n)
@@ -27,18 +22,38 @@ def test_the_form_of_a_curve_and_that_of_its_game_both_give_the_game(scenario: S
         assert Form.of_game(game, 3).game() == game
 
 
-def test_a_form_may_say_what_is_not_allowed_until_a_game_is_made_of_it() -> None:
-    form = Form(PAIR)
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"side": 3.0},
+        {"stations": ((0.0, 0.5),), "bases": ((-0.7, 0.0), (0.7, 0.0))},
+        {"body": Body(radius=0.06, sensor_range=0.5, top_speed=0.25)},
+        {
+            "actions": (
+                Action(name="go", direction=AWAY, duration=2.0),
+                Action(name="on", direction=TOWARDS, duration=1.0),
+            )
+        },
+        {"absent": (3,), "absent_from": "game"},
+    ],
+)
+def test_a_form_has_every_field_of_a_game(changes: dict[str, Any]) -> None:
+    game = CATALOGUE["fig-6.1c"].game("", 6).replace(**changes)
+    assert Form.of_game(game, 0).game() == game
+
+
+def test_a_form_can_hold_invalid_values_until_its_game_is_built() -> None:
+    form = Form.of_condition(CATALOGUE["fig-6.1c"].conditions[0], 20, 0)
     for field, value in (("seed", -1), ("seed", 1.5), ("n", 7), ("layout", "round"), ("duration", -1.0)):
         with pytest.raises(InputError, match=field):
-            form._replace(**{field: value}).game()
+            form.replace(**{field: value}).game()
     for field, other in (("policy", "atack"), ("share", 0), ("drive", 0.0)):
         with pytest.raises(InputError, match=field):
-            form.with_swarm(1, **{field: other}).game()
-    assert form.with_swarm(1, policy="mixed").game().swarms[1].policy == "mixed"
+            form.replace_swarm(1, **{field: other}).game()
+    assert form.replace_swarm(1, policy="mixed").game().swarms[1].policy == "mixed"
 
 
-def test_a_parameter_is_named_only_where_the_preset_has_another_value() -> None:
+def test_a_text_names_only_parameters_that_differ_from_the_preset() -> None:
     changed = with_parameter("fitted, preempt=true", "friction", 0.3)
     assert changed == "fitted, friction=0.3, preempt=True"
     assert with_parameter(changed, "friction", PRESETS["fitted"].friction) == "fitted, preempt=True"
@@ -62,19 +77,3 @@ def test_the_controls_of_learning_show_the_first_learner(
     policies: list[str], seen: tuple[object, ...] | None
 ) -> None:
     assert learning_of(policies) == seen
-
-
-def test_learning_is_changed_in_the_text_of_the_policy() -> None:
-    text = with_learning("inter-learner(otherwise='fight')", "reward", delta=0.2)
-    assert parse_call("policy", text).arguments == {"otherwise": "fight", "reward": "wlu(delta=0.2)"}
-    text = with_learning(text, "reward", delta=0.02)
-    assert parse_call("policy", text).arguments["reward"] == "wlu(delta=0.02)"
-    text = with_learning(text, "rule", "greedy")
-    assert parse_call("policy", text).arguments["rule"] == "greedy"
-    assert with_learning(text, "reward", "individual").count("individual") == 1
-
-
-def test_only_learners_are_changed() -> None:
-    assert with_learning("mixed", "reward", delta=0.2) == "mixed"
-    changed = with_learning("avoid+learner", "rule", gamma=0.5)
-    assert changed == "avoid+learner(rule='ucb(gamma=0.5)')"

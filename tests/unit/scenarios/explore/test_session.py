@@ -1,4 +1,4 @@
-"""The page without the page: what its controls and buttons do."""
+"""The session of a page: its controls and buttons, without widgets."""
 
 import math
 from collections.abc import Callable
@@ -8,9 +8,10 @@ import pytest
 
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.explore import playback
 from kswarms.scenarios.explore import session as session_module
 from kswarms.scenarios.explore.session import Session
-from kswarms.scenarios.explore.views import curves_of, frame_of, scene_of
+from kswarms.scenarios.explore.views import charts_of, frame_of, scene_of
 from kswarms.scenarios.runs.outcome import RunError
 from kswarms.scenarios.runs.run import Run, digest
 
@@ -28,7 +29,7 @@ def session() -> Session:
     return Session("fig-6.1c")
 
 
-def test_a_session_begins_with_a_scenario(session: Session) -> None:
+def test_a_session_starts_with_a_scenario(session: Session) -> None:
     assert (session.source, session.title) == ("fig-6.1c", CATALOGUE["fig-6.1c"].title)
     assert session.player.game == CATALOGUE["fig-6.1c"].game("", 20)
     assert (session.player.time, session.playing, session.error, session.active) == (0.0, False, "", False)
@@ -36,37 +37,37 @@ def test_a_session_begins_with_a_scenario(session: Session) -> None:
         Session("fig-9")
 
 
-def test_a_session_may_begin_with_a_run() -> None:
+def test_a_session_can_start_with_a_run() -> None:
     game = CATALOGUE["fig-7.10"].game("delta=0.1", 8)
     run = Run(digest(game, 7), game, 7, (("fig-7.10", "delta=0.1"), ("other", "")))
     session = Session(run)
     assert (session.player.game, session.player.seed) == (game, 7)
     assert session.source == f"run {run.digest}"
     assert session.title == "fig-7.10 delta=0.1, other"
-    session.change(session.form._replace(seed=8))
+    session.change(seed=8)
     assert (session.error, session.player.seed) == ("", 8)
 
 
-def test_a_table_or_a_file_offers_all_its_curves(tmp_path: Path) -> None:
-    assert list(Session("table-6.1").curves) == ["fig-6.4a", "fig-6.4b"]
+def test_a_table_or_a_file_offers_all_its_conditions(tmp_path: Path) -> None:
+    assert list(Session("table-6.1").conditions) == ["fig-6.4a", "fig-6.4b"]
     file = tmp_path / "mine.toml"
     file.write_text(CATALOGUE["fig-6.12"].replace(id="mine").to_toml())
     session = Session(str(file))
-    assert list(session.curves) == [condition.name for condition in CATALOGUE["fig-6.12"].conditions]
-    session.choose_curve("random")
+    assert list(session.conditions) == [condition.name for condition in CATALOGUE["fig-6.12"].conditions]
+    session.select_condition("random")
     assert session.player.game.swarms[1].policy == "random"
 
 
-def test_a_mistake_is_told_in_one_line_and_leaves_the_game(session: Session) -> None:
+def test_an_invalid_control_is_reported_in_one_line_and_the_game_is_kept(session: Session) -> None:
     session.player.advance(3.0)
     kept = session.player
-    session.change(session.form._replace(parameters="fitted, friction=-1"))
+    session.change(parameters="fitted, friction=-1")
     assert session.error == "friction='-1': must be greater than or equal to 0"
     assert session.player is kept
-    assert session.form.parameters == "fitted, friction=-1"
+    assert session.form.fields["parameters"] == "fitted, friction=-1"
     session.change_swarm(0, policy="atack")
-    assert session.error.startswith("friction=")  # still: both are wrong
-    session.change(session.form._replace(parameters="fitted"))
+    assert session.error.startswith("friction=")  # both are invalid
+    session.change(parameters="fitted")
     assert session.error.startswith("policy='atack': must be one of avoid")
     session.load("fig-nine")
     assert session.error.startswith("id='fig-nine'")
@@ -76,47 +77,47 @@ def test_a_mistake_is_told_in_one_line_and_leaves_the_game(session: Session) -> 
     assert session.player.game.swarms[0].policy == "aggressive"
 
 
-def test_a_control_changes_the_game_and_starts_it_again(session: Session) -> None:
+def test_a_control_changes_the_game_and_restarts_it(session: Session) -> None:
     session.player.advance(5.0)
-    session.choose(19)
-    session.change(session.form._replace(n=6))
-    assert (session.player.game.size, session.player.time, session.chosen) == (6, 0.0, 5)
+    session.select(19)
+    session.change(n=6)
+    assert (session.player.game.size, session.player.time, session.selected) == (6, 0.0, 5)
     session.load("fig-6.4b")
-    assert session.chosen == 3  # the first that learns
+    assert session.selected == 3  # the first learner
     assert session.player.time == -3000.0
 
 
-def test_shares_and_swarms_bring_an_n_that_suits_them(session: Session) -> None:
+def test_shares_and_swarms_change_n_to_a_suitable_number(session: Session) -> None:
     assert session.step_of_n() == 2
     session.change_swarm(0, share=2)
     assert (session.step_of_n(), session.form.n, session.error) == (3, 21, "")
-    session.change_swarms(3)
+    session.change_number_of_swarms(3)
     assert [swarm.size for swarm in session.player.game.swarms] == [10, 5, 5]
-    session.change_swarms(1)
+    session.change_number_of_swarms(1)
     assert [swarm.size for swarm in session.player.game.swarms] == [20]
     session.change_swarm(0, share=0)
     assert session.error == "share=0: must be greater than or equal to 1"
 
 
-def test_time_on_the_wall_is_time_of_the_game_by_the_speed(session: Session) -> None:
+def test_the_speed_is_the_time_of_the_game_per_second(session: Session) -> None:
     assert not session.tick(1.0)
-    session.play()
+    session.toggle()
     assert session.active
     assert session.tick(0.1)
     assert session.player.time == pytest.approx(1.0)
     session.speed = 1
-    assert not session.tick(0.06)  # less than a period is owed
+    assert not session.tick(0.06)  # less than a period
     assert session.tick(0.06)
     assert session.player.time == pytest.approx(1.1)
     assert not session.tick(0.06)
-    assert session.tick(0.02)  # what is owed is not lost
-    session.play()
+    assert session.tick(0.02)  # the remainder is kept
+    session.toggle()
     assert not session.tick(1.0)
     session.step()
     assert session.player.time == pytest.approx(1.3)
 
 
-def test_going_to_an_instant_needs_no_playing(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_game_goes_to_an_instant_while_paused(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
     session.go_to(50.0)
     while session.active:
         assert session.tick(0.01)
@@ -125,9 +126,9 @@ def test_going_to_an_instant_needs_no_playing(session: Session, monkeypatch: pyt
     while session.active:
         session.tick(0.01)
     assert session.player.time == 20.0
-    monkeypatch.setattr(session_module, "_HASTE", 0.0)
+    monkeypatch.setattr(playback, "_BURST", 0.0)
     session.go_to(30.0)
-    session.tick(0.01)  # in no time nothing is played, but the page can be drawn
+    session.tick(0.01)  # without time nothing is played, and the page is updated
     assert (session.player.time, session.active) == (20.0, True)
     monkeypatch.undo()
     session.go_to(1e9)
@@ -139,7 +140,7 @@ def test_going_to_an_instant_needs_no_playing(session: Session, monkeypatch: pyt
 
 
 @pytest.mark.parametrize("time", [math.nan, math.inf, -math.inf])
-def test_an_instant_that_is_none_is_refused_until_another_is_asked_for(time: float, session: Session) -> None:
+def test_an_invalid_instant_is_reported_until_a_valid_one_is_given(time: float, session: Session) -> None:
     session.player.advance(3.0)
     for instant in (1.0, 5.0):
         session.go_to(time)
@@ -152,30 +153,30 @@ def test_an_instant_that_is_none_is_refused_until_another_is_asked_for(time: flo
         assert session.player.time == instant
 
 
-def test_a_game_that_is_over_stands_still(session: Session) -> None:
-    session.change(session.form._replace(duration=2.0))
-    session.play()
+def test_a_finished_game_does_not_move(session: Session) -> None:
+    session.change(duration=2.0)
+    session.toggle()
     session.tick(1.0)
     assert session.player.ended
     assert not session.active
     assert not session.tick(1.0)
 
 
-def test_the_next_conflict_is_that_of_the_chosen_robot(session: Session) -> None:
-    session.play()
-    session.choose(4)
-    session.next_conflict()
+def test_the_next_conflict_is_one_of_the_selected_robot(session: Session) -> None:
+    session.toggle()
+    session.select(4)
+    session.next_conflict(session.selected)
     assert not session.playing
     assert session.player.snapshot().in_action[4]
 
 
-def test_a_session_that_is_closed_plays_no_more(session: Session) -> None:
-    session.play()
+def test_a_closed_session_does_not_play(session: Session) -> None:
+    session.toggle()
     session.close()
     assert not session.tick(1.0)
 
 
-def test_the_browser_is_given_plain_data(session: Session) -> None:
+def test_the_browser_gets_json(session: Session) -> None:
     player = session.player
     scene = scene_of(player)
     assert len(scene["bases"]) == len(scene["colours"]) == 2
@@ -186,24 +187,24 @@ def test_the_browser_is_given_plain_data(session: Session) -> None:
     positions = player.snapshot().positions
     assert frame["x"] == pytest.approx(positions[:, 0], abs=1e-4)
     assert frame_of(player, 3, 5, sectors=True, sensors=False)["sensors"] is None
-    charts = curves_of(player.history)
+    charts = charts_of(player.history)
     assert [len(chart["series"]) for chart in charts.values()] == [2, 2, 4]
 
 
-def test_what_is_learned_has_a_chart_with_a_line_for_each_pair_of_swarms() -> None:
+def test_the_chart_of_learning_has_a_line_for_each_pair_of_swarms() -> None:
     session = Session("fig-6.8")
-    charts = curves_of(session.player.history)
+    charts = charts_of(session.player.history)
     learned = charts["Share of learners whose best action is to fight"]
     assert [line["name"] for line in learned["series"]] == ["S2 against S1", "S2 within"]
     assert learned["yAxis"]["max"] == 1.0
 
 
-def test_once_the_game_has_begun_only_what_is_learned_is_shown_from_before_it() -> None:
+def test_after_the_learning_phase_only_the_chart_of_learning_shows_it() -> None:
     session = Session("fig-6.4b")
-    session.change(session.form._replace(n=6, learning=20.0))
+    session.change(n=6, learning=20.0)
 
     def first_times() -> dict[str, float]:
-        charts = curves_of(session.player.history)
+        charts = charts_of(session.player.history)
         return {name: chart["series"][0]["data"][0][0] for name, chart in charts.items()}
 
     assert set(first_times().values()) == {-20.0}
@@ -213,11 +214,11 @@ def test_once_the_game_has_begun_only_what_is_learned_is_shown_from_before_it() 
     assert set(first.values()) == {0.0}
 
 
-def test_a_chart_of_no_time_yet_begins_where_its_game_does() -> None:
+def test_an_empty_chart_starts_where_its_game_starts() -> None:
     session = Session("fig-6.4b")
 
     def axes() -> set[tuple[float, float]]:
-        axes = (chart["xAxis"] for chart in curves_of(session.player.history).values())
+        axes = (chart["xAxis"] for chart in charts_of(session.player.history).values())
         return {(axis["min"], axis["max"]) for axis in axes}
 
     assert axes() == {(-3000.0, -2990.0)}
@@ -226,7 +227,7 @@ def test_a_chart_of_no_time_yet_begins_where_its_game_does() -> None:
 
 
 @pytest.mark.parametrize("failure", [ZeroDivisionError("by zero"), SystemExit("enough")])
-def test_a_game_that_fails_stops_and_says_why(
+def test_a_game_that_fails_stops_and_reports_the_error(
     failure: BaseException, session: Session, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def choose(_opponent: int) -> None:
@@ -234,41 +235,41 @@ def test_a_game_that_fails_stops_and_says_why(
 
     for robot in session.player.model.robots:
         monkeypatch.setattr(robot.policy, "choose", choose)
-    session.play()
+    session.toggle()
     while session.active:
         session.tick(1.0)
     assert session.error == f"the game failed: {type(failure).__name__}: {failure}"
     session.go_to(500.0)
-    assert not session.tick(1.0)  # a game that failed is over
-    session.reset()  # with new robots
+    assert not session.tick(1.0)  # a failed game does not move
+    session.reset()  # new robots
     assert (session.error, session.player.time) == ("", 0.0)
     session.step()
     assert session.player.time == 0.1
 
 
-def test_a_text_that_cannot_be_read_does_not_stop_the_other_controls(session: Session) -> None:
+def test_an_invalid_text_does_not_break_the_other_controls(session: Session) -> None:
     session.change_swarm(0, policy="learner(rule=")
     session.change_learning("reward", delta=0.2)
     assert session.error.startswith("policy='learner(rule=': must be name or name(")
-    session.change(session.form._replace(parameters="fited"))
+    session.change(parameters="fited")
     session.change_parameter("friction", 0.2)
     assert session.error.startswith("parameters='fited': must begin with one of")
 
 
-def test_a_policy_of_a_file_of_ones_own_plays(session: Session, tmp_path: Path) -> None:
+def test_a_user_defined_policy_plays(session: Session, tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
     file.write_text(COWARD)
     session.change_swarm(1, policy=f"{file}:Coward")
     assert session.error == ""
     session.player.seek(60.0)
-    assert {account.row["action"] for account in session.player.conflicts} == {"flight"}
+    assert {conflict.row["action"] for conflict in session.player.conflicts} == {"flight"}
     file.write_text("class Coward:\n    pass\n")
     session.change_swarm(1, policy=f"{file}:Cowerd")
     assert "has no class Cowerd" in session.error
 
 
 @pytest.mark.parametrize("back", [Session.reset, lambda session: session.go_to(1.0)])
-def test_a_game_that_can_no_longer_be_wound_back_stays_where_it_is_until_it_can(
+def test_a_game_that_cannot_be_rewound_keeps_its_state_until_it_can(
     back: Callable[[Session], None], session: Session, tmp_path: Path
 ) -> None:
     file = tmp_path / "mine.py"
@@ -290,7 +291,7 @@ def test_a_game_that_can_no_longer_be_wound_back_stays_where_it_is_until_it_can(
     assert session.player.time <= 1.0
 
 
-def test_winding_back_does_not_forget_a_mistake_of_the_controls(session: Session) -> None:
+def test_rewinding_keeps_the_error_of_an_invalid_control(session: Session) -> None:
     session.player.advance(3.0)
     session.change_swarm(0, policy="atack")
     session.reset()
@@ -298,9 +299,7 @@ def test_winding_back_does_not_forget_a_mistake_of_the_controls(session: Session
     assert session.error.startswith("policy='atack'")
 
 
-def test_a_policy_that_fails_before_its_game_is_told_as_a_run_that_failed(
-    session: Session, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_error_before_the_game_is_a_run_error(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(session_module, "Player", lambda *_: 1 // 0)
     with pytest.raises(RunError, match=r"the game of fig-6\.1c failed: ZeroDivisionError: integer"):
         Session("fig-6.1c")
