@@ -12,6 +12,7 @@ from kswarms.agents.common.columns import RECORDED_TABLES, names
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.saved import best_actions, save, snapshot_of
 from kswarms.agents.theory.swarms import swarm_utility_difference
+from kswarms.agents.theory.times import share_of_time
 from kswarms.model.game_state import GameState
 
 RECORDS: Final = ("model", "agents", *RECORDED_TABLES)
@@ -164,8 +165,7 @@ def _sample_row(state: GameState) -> dict[str, Any]:
     sample = {"time": state.time, "duration": state.duration, "ended": state.ended}
     for k in range(len(state.members)):
         t_a, t_p = state.times(k)
-        played = sum(t_a) + t_p
-        share = sum(t_a) / played if played > 0 else 0.0
+        share = float(share_of_time(sum(t_a), sum(t_a), t_p))
         row = _result_row(state, k, t_a, t_p) | {"share_a": share, "share_p": 1.0 - share}
         sample |= {f"{name}_{k + 1}": value for name, value in row.items() if name not in _OF_GAME}
     return sample

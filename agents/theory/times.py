@@ -4,7 +4,11 @@ Times are in seconds, weights are positive numbers, so utilities are in weighted
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+
+_Time = TypeVar("_Time", bound=Any)
 
 
 class Interaction(NamedTuple):
@@ -27,6 +31,13 @@ class Interaction(NamedTuple):
 def _mean(values: Sequence[float]) -> float:
     # Every mean here is multiplied by the number of its values: over nobody it may be anything finite.
     return sum(values) / len(values) if values else 0.0
+
+
+def share_of_time(part: _Time, t_a: _Time, t_p: _Time) -> _Time:
+    """Return part / (T(a) + T(p)), elementwise for arrays and tables; 0 where no time has passed."""
+    total = t_a + t_p
+    share: _Time = part / np.where(total > 0, total, 1)
+    return share
 
 
 def time_utility(t_a: float, t_p: float, alpha: float, beta: float) -> float:

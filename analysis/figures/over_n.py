@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.theory.times import share_of_time
 from kswarms.analysis.figures.files import save
 from kswarms.analysis.figures.style import (
     LineStyle,
@@ -100,8 +101,8 @@ def with_time_shares(rows: pd.DataFrame) -> pd.DataFrame:
     """Add the shares of time in conflict to rows of `runs.parquet`: a column for each of `TIME_SHARES`."""
     in_conflict = rows["t_a_intra"] + rows["t_a_inter"]
     times = (in_conflict, rows["t_a_inter"], rows["t_a_intra"])
-    lived = in_conflict + rows["t_p"]
-    return rows.assign(**{kind: time / lived for kind, time in zip(TIME_SHARES, times, strict=True)})
+    shares = (share_of_time(time, in_conflict, rows["t_p"]) for time in times)
+    return rows.assign(**dict(zip(TIME_SHARES, shares, strict=True)))
 
 
 def sud_over_n(

@@ -10,6 +10,7 @@ from typing import Any
 import pandas as pd
 
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.theory.times import share_of_time
 from kswarms.analysis.results.published import argos_fixed_policies
 from kswarms.analysis.statistics.comparisons import compare_independent
 from kswarms.analysis.text_tables import NONE, PrintedTable, with_interval
@@ -128,7 +129,7 @@ def _verdict(fits: bool) -> str:
 
 def _own_games(runs: pd.DataFrame) -> pd.DataFrame:
     in_conflict = runs["t_a_intra"] + runs["t_a_inter"]
-    return runs[_ROW].assign(score=runs["pucks"], share=in_conflict / (in_conflict + runs["t_p"]))
+    return runs[_ROW].assign(score=runs["pucks"], share=share_of_time(in_conflict, in_conflict, runs["t_p"]))
 
 
 def _argos_games() -> pd.DataFrame:

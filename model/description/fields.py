@@ -4,20 +4,17 @@ from typing import Any, Final, Literal, get_args
 
 from pydantic import Field, model_validator
 
-from kswarms.agents.actions import LONGEST, Action
+from kswarms.agents.actions import Action
 from kswarms.agents.body import BODIES, Body
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
-from kswarms.model.description.parameters import FARTHEST, PRESETS, Parameters, parse_parameters
+from kswarms.agents.common.limits import LONGEST_DISTANCE, LONGEST_TIME, MOST_PLACES, MOST_PUCKS
+from kswarms.model.description.parameters import PRESETS, Parameters, parse_parameters
 
 Layout = Literal["symmetric", "nearer-station", "random-stations"]
 LAYOUTS: Final[tuple[Layout, ...]] = get_args(Layout)
 Place = tuple[float, float]
 
-MOST_PUCKS: Final = 10**9
-"""Maximum of `puck_limit` and `supply`."""
-MOST_PLACES: Final = 1000
-"""Maximum number of stations, and of bases."""
 
 
 class SwarmFields(Checked):
@@ -71,7 +68,7 @@ class GameFields(Checked):
     layout: Layout = "symmetric"
     stations: tuple[Place, ...] = Field((), max_length=MOST_PLACES)
     bases: tuple[Place, ...] = Field((), max_length=MOST_PLACES)
-    side: float = Field(2.0, gt=0, le=FARTHEST)
+    side: float = Field(2.0, gt=0, le=LONGEST_DISTANCE)
     body: Body = BODIES["krembot-sim"]
     parameters: Parameters = PRESETS["fitted"]
     actions: tuple[Action, ...] = ()
@@ -79,7 +76,7 @@ class GameFields(Checked):
     learning: float = Field(0.0, ge=0)
     duration: float = Field(600.0, gt=0)
     puck_limit: int | None = Field(None, ge=1, le=MOST_PUCKS)
-    sample_period: float = Field(10.0, gt=0, le=LONGEST)
+    sample_period: float = Field(10.0, gt=0, le=LONGEST_TIME)
 
     @model_validator(mode="before")
     @classmethod

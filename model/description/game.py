@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any, Final, Literal, Self
+from typing import Any, Literal, Self
 
 from pydantic import (
     Field,
@@ -14,6 +14,7 @@ from pydantic import (
 
 from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.limits import LONGEST_STEP, MOST_PERIODS, MOST_ROBOTS
 from kswarms.agents.conformance.trial import try_policy
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.registry import ALIASES, POLICIES
@@ -21,13 +22,6 @@ from kswarms.agents.policies.spec import parse_policies
 from kswarms.agents.streams import Streams
 from kswarms.model.description.arena import Arena, build_arena
 from kswarms.model.description.fields import GameFields, SwarmFields
-
-MOST_PERIODS: Final = 2**53
-"""Maximum number of control periods, so that float64 counts them exactly."""
-MOST_ROBOTS: Final = 1_000_000
-"""Maximum size of a swarm, and of the number of robots divided among swarms."""
-LONGEST_STEP: Final = 0.8
-"""Maximum distance that a robot covers in a period, in radii: two robots must not pass through each other."""
 
 
 class Swarm(SwarmFields):

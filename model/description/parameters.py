@@ -5,16 +5,10 @@ from typing import Final, Literal
 
 from pydantic import Field
 
-from kswarms.agents.actions import AWAY, LONGEST, TOWARDS, Action
+from kswarms.agents.actions import AWAY, TOWARDS, Action
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
-
-FARTHEST: Final = 10_000.0
-"""Maximum of all distances and of the side of the arena (m)."""
-SHORTEST_PERIOD: Final = 1e-6
-"""Minimum control period (s)."""
-SLOWEST_TURN: Final = 1e-9
-"""Minimum turning rate (rad/s): half a turn takes a century."""
+from kswarms.agents.common.limits import LONGEST_DISTANCE, LONGEST_TIME, SHORTEST_PERIOD, SLOWEST_TURN
 
 
 class Parameters(Checked):
@@ -65,25 +59,25 @@ class Parameters(Checked):
     """
 
     period: float = Field(0.1, ge=SHORTEST_PERIOD, le=1)
-    conflict_distance: float = Field(0.1718, gt=0, le=FARTHEST)
+    conflict_distance: float = Field(0.1718, gt=0, le=LONGEST_DISTANCE)
     front_half_angle: float = Field(math.radians(62.5), gt=0, le=math.pi)
-    flight_duration: float = Field(1.619, gt=0, le=LONGEST)
-    fight_duration: float = Field(1.0, gt=0, le=LONGEST)
+    flight_duration: float = Field(1.619, gt=0, le=LONGEST_TIME)
+    fight_duration: float = Field(1.0, gt=0, le=LONGEST_TIME)
     turning_rate: float = Field(2.96, ge=SLOWEST_TURN)
-    flight_range: float = Field(0.46, gt=0, le=FARTHEST)
-    active_range: float = Field(0.2467, gt=0, le=FARTHEST)
-    leg_mean: float = Field(6.7, gt=0, le=LONGEST)
+    flight_range: float = Field(0.46, gt=0, le=LONGEST_DISTANCE)
+    active_range: float = Field(0.2467, gt=0, le=LONGEST_DISTANCE)
+    leg_mean: float = Field(6.7, gt=0, le=LONGEST_TIME)
     wander_turn: float = Field(math.radians(86), gt=0, le=math.pi)
-    wall_distance: float = Field(0.06, gt=0, le=FARTHEST)
+    wall_distance: float = Field(0.06, gt=0, le=LONGEST_DISTANCE)
     wall_half_angle: float = Field(0.0, ge=0, lt=math.pi / 2)
     wall_escape: Literal["clear", "away"] = "clear"
     station_radius: float = Field(0.16, gt=0)
     base_radius: float = Field(0.17, gt=0)
-    base_range: float = Field(0.82, gt=0, le=FARTHEST)
+    base_range: float = Field(0.82, gt=0, le=LONGEST_DISTANCE)
     friction: float = Field(0.1596, ge=0)
     push_share: float = Field(0.0, ge=0, le=1)
-    clearance: float = Field(0.01, ge=0, le=FARTHEST)
-    wall_clearance: float = Field(0.005, ge=0, le=FARTHEST)
+    clearance: float = Field(0.01, ge=0, le=LONGEST_DISTANCE)
+    wall_clearance: float = Field(0.005, ge=0, le=LONGEST_DISTANCE)
     preempt: bool = False
 
     def actions(self) -> tuple[Action, Action]:

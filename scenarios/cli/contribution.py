@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 import typer
 
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.limits import MOST_SEEDS
 from kswarms.scenarios.catalogue.selecting import chosen
 from kswarms.scenarios.cli.options import (
     Jobs,
@@ -19,7 +20,6 @@ from kswarms.scenarios.cli.options import (
 )
 from kswarms.scenarios.cli.printing import print_table
 from kswarms.scenarios.cli.progress import track
-from kswarms.scenarios.description.scenario import MOST_SEEDS
 from kswarms.scenarios.runs.outcome import Outcome
 from kswarms.scenarios.runs.run import Run
 

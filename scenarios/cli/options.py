@@ -2,17 +2,15 @@
 
 import os
 from pathlib import Path
-from typing import Annotated, Final
+from typing import Annotated
 
 import typer
 
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.limits import LAST_SEED, MOST_JOBS
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selecting import FIRST_SCENARIO, USUAL_N, chosen
-from kswarms.scenarios.runs.run import LAST_SEED, Run, digest
-
-MOST_JOBS: Final = 1024
-"""Maximum number of worker processes; memory limits it long before."""
+from kswarms.scenarios.runs.run import Run, digest
 
 Jobs = Annotated[int | None, typer.Option(help="Worker processes, at least 1. [default: one for each CPU]")]
 

@@ -7,12 +7,11 @@ from pydantic import Field
 
 from kswarms.agents.body import BODIES
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.limits import LONGEST_NAME
 from kswarms.model.description.fields import GameFields, SwarmFields
 from kswarms.model.description.game import Game, Swarm, apportion
 from kswarms.model.description.parameters import text_of
 
-LONGEST_NAME: Final = 100
-"""Maximum number of characters of a name; file names contain it."""
 ONE_LINE: Final = r"^[^\x00-\x1f\x7f]*$"
 """Pattern of a text without line breaks and control characters."""
 Value = bool | int | float | str

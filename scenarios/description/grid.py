@@ -6,6 +6,7 @@ from math import prod
 from typing import Any, Final
 
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.limits import MOST_POINTS
 from kswarms.agents.policies.editing import with_learning
 from kswarms.agents.policies.spec import parse_policies
 from kswarms.model.description.fields import GameFields
@@ -15,8 +16,6 @@ from kswarms.scenarios.description.condition import Condition, SwarmRule, Value
 Grid = Mapping[str, tuple[Value, ...]]
 """Values of each field."""
 
-MOST_POINTS: Final = 1000
-"""Maximum number of conditions of a scenario with a grid."""
 _FIELDS: Final = (*(name for name in GameFields.model_fields if name != "parameters"), "multiple_of")
 _LEARNING: Final = ("reward", "rule")
 

@@ -12,8 +12,9 @@ from pydantic import Field, model_validator
 
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.limits import LONGEST_NAME, LONGEST_TITLE, MOST_SEEDS
 from kswarms.model.description.game import Game
-from kswarms.scenarios.description.condition import LONGEST_NAME, ONE_LINE, Condition, Value
+from kswarms.scenarios.description.condition import ONE_LINE, Condition, Value
 from kswarms.scenarios.description.grid import collapse_grid, expand_grid
 
 DENSITIES: Final = (6, 10, 16, 20, 26, 30, 36, 40, 46, 50)
@@ -22,10 +23,6 @@ SEEDS: Final = 20
 """Default number of games per density (section 3.1)."""
 LEARNING: Final = 3000.0
 """Duration of the learning phase of learners in the source (s, section 3.1)."""
-MOST_SEEDS: Final = 1_000_000
-"""Maximum number of games per density."""
-LONGEST_TITLE: Final = 200
-"""Maximum number of characters of a title."""
 
 
 class Scenario(Checked):

@@ -18,7 +18,7 @@ from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.explore.form import learning_of
 from kswarms.scenarios.explore.session import Act, Session
 
-MOST_ROBOTS: Final = 100
+_SLIDER_ROBOTS: Final = 100
 _SLIDERS: Final = {
     "friction": ("Friction μ", (0.0, 1.0, 0.02)),
     "conflict_distance": ("Conflict distance (m)", (0.02, 0.4, 0.01)),
@@ -48,7 +48,7 @@ def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:
         f"Robots N = {form.n}",
         form.n,
         min=step,
-        max=max(step, MOST_ROBOTS // step * step),
+        max=max(step, _SLIDER_ROBOTS // step * step),
         step=step,
         on_value=lambda n: change(n=n),
     )

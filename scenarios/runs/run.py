@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Final
 
 from kswarms import __version__
 from kswarms.agents.common.errors import InputError
@@ -15,9 +14,6 @@ from kswarms.model.description.game import Game
 from kswarms.scenarios.description.condition import Condition
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.runs.cost import cpu_seconds
-
-LAST_SEED: Final = 2**53
-"""Largest seed: every table and file represents it exactly."""
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ import numpy as np
 from kswarms.agents.common.arrays import Floats, Integers
 from kswarms.agents.robot.state import ACTION
 from kswarms.agents.theory.swarms import swarm_utility_difference
+from kswarms.agents.theory.times import share_of_time
 from kswarms.model.description.game import Game
 from kswarms.model.game_model import GameModel
 from kswarms.model.recorder import policy_rows
@@ -253,8 +254,8 @@ class Player:
 
 def _shares(t_a: Sequence[int], t_p: int, swarm: int) -> tuple[float, float]:
     """Return the shares of time in conflicts within the swarm and with others, 0 at the start."""
-    lived = sum(t_a) + t_p
-    return (t_a[swarm] / lived, (sum(t_a) - t_a[swarm]) / lived) if lived else (0.0, 0.0)
+    total = sum(t_a)
+    return share_of_time(t_a[swarm], total, t_p), share_of_time(total - t_a[swarm], total, t_p)
 
 
 def _fights(rows: Sequence[dict[str, Any]]) -> dict[tuple[int, int], float]:

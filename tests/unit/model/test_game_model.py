@@ -7,10 +7,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from kswarms.agents.actions import LONGEST
+from kswarms.agents.common.limits import LONGEST_TIME, SHORTEST_PERIOD, SLOWEST_TURN
 from kswarms.agents.theory.swarms import swarm_utility_difference
 from kswarms.model.description.game import Game, Swarm
-from kswarms.model.description.parameters import PRESETS, SHORTEST_PERIOD, SLOWEST_TURN
+from kswarms.model.description.parameters import PRESETS
 from kswarms.model.foraging import ForagingModel
 from kswarms.model.game_model import GameModel
 from kswarms.model.recorder import RECORDS, parse_record
@@ -39,10 +39,11 @@ def test_it_is_a_mesa_model_of_robots_in_a_continuous_space() -> None:
 
 
 def test_what_the_limits_of_the_parameters_allow_can_be_played() -> None:
-    times = dict.fromkeys(("flight_duration", "fight_duration", "leg_mean"), LONGEST)
+    times = dict.fromkeys(("flight_duration", "fight_duration", "leg_mean"), LONGEST_TIME)
     for rest in ({"turning_rate": SLOWEST_TURN}, {"turning_rate": 1e308}, {"leg_mean": 1e-308}):
         slow = PRESETS["fitted"].replace(period=SHORTEST_PERIOD, conflict_distance=0.5, **(times | rest))
-        model = GameModel(GAME.replace(parameters=slow, duration=1e-4, sample_period=LONGEST), 2, "robots")
+        game = GAME.replace(parameters=slow, duration=1e-4, sample_period=LONGEST_TIME)
+        model = GameModel(game, 2, "robots")
         model.play()
         assert model.ended == "time"
         assert sum(sum(robot.conflicts) for robot in model.robots) > 0
