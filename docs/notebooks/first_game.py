@@ -8,21 +8,21 @@
 # %% [markdown]
 # # First game
 #
-# Two swarms of ten robots each look for pucks in an arena of 2 × 2 m. S1 *avoids*: at a meeting it flees.
-# S2 *attacks*: it flees from its own and fights the others.
+# Two swarms of ten robots each gather pucks in an arena of 2 × 2 m. S1 *avoids*: it flees from every robot.
+# S2 *attacks*: it fights robots of S1 and flees from its own.
 
 # %%
 import matplotlib.pyplot as plt
 import pandas as pd
 import seaborn as sns
 
-from kswarms.model.foraging import ForagingModel
+from kswarms import ForagingModel
 
 model = ForagingModel(n=20, policies="avoid,attack", duration=600, seed=1)
 
 # %% [markdown]
-# `step()` plays one sampling period, 10 s. In between everything can be looked at: the model is a Mesa
-# model, its robots are Mesa agents.
+# `step()` plays one sampling period of 10 s. The model is a Mesa model and its robots are Mesa agents, so
+# everything can be inspected in between.
 
 # %%
 for _ in range(6):
@@ -31,8 +31,8 @@ robot = model.robots[0]
 print(f"t = {model.time} s: robot 0 at {robot.position.round(2)}, state {robot.state}, puck {robot.carrying}")
 
 # %% [markdown]
-# The arena as it is now: supply stations black, bases in the colour of their swarm; a line for each robot's
-# heading, a black dot for a puck that it carries.
+# The arena now: supply stations are black, bases have the colour of their swarm. A line is a robot's
+# heading, a black dot a puck.
 
 # %%
 COLOURS = ("tab:green", "tab:red")
@@ -61,7 +61,7 @@ figure, axes = plt.subplots(figsize=(4.5, 4.5))
 draw_arena(model, axes)
 
 # %% [markdown]
-# Play on to the end. What the model sampled on the way is in Mesa's DataCollector.
+# Play to the end. Mesa's DataCollector holds the samples.
 
 # %%
 model.play()
@@ -79,14 +79,14 @@ left.legend()
 right.legend();
 
 # %% [markdown]
-# The result of a game is a row for each swarm: pucks, the difference to all others (SUD), robot-seconds of
-# conflicts within the swarm and with others, and of the program.
+# The result of a game has one row for each swarm: pucks, the difference to all others (SUD), and
+# robot-seconds of conflicts within the swarm, with others, and of the program.
 
 # %%
 pd.DataFrame(model.results()).set_index("swarm").T
 
 # %% [markdown]
-# Which of the two pays depends on the crowd. Six games of 300 s at each of three densities:
+# Which policy is better depends on the number of robots. Six games of 300 s at each of three densities:
 
 # %%
 rows = []

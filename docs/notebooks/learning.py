@@ -6,19 +6,19 @@
 # ---
 
 # %% [markdown]
-# # Learning and its traces
+# # Learning
 #
-# A learner has a bandit for each swarm-ID that it can meet, with an arm for each action. Here S2 learns
-# whether to flee from S1 or to fight it; within the swarm it flees. S1 attacks. Learning takes 1,000 s,
-# then a game of 300 s is measured in which everyone keeps to what it learned.
+# A learner has one bandit for each swarm-ID that it can meet, with one arm for each action. Here S2 learns
+# whether to flee from S1 or to fight it; within its swarm it flees. S1 attacks. The learning phase takes
+# 1,000 s. Then a game of 300 s is measured, in which learners use what they learned.
 
 # %%
 import matplotlib.pyplot as plt
 import pandas as pd
 import seaborn as sns
 
+from kswarms import ForagingModel
 from kswarms.agents.learning.selection_rules import UCB
-from kswarms.model.foraging import ForagingModel
 from kswarms.model.recorder import policy_rows
 
 model = ForagingModel(
@@ -27,15 +27,15 @@ model = ForagingModel(
 model.play()
 
 # %% [markdown]
-# What one robot knows at the end: for each arm the sums of rewards and of times, how often it was taken,
-# and Q = ΣR / ΣT (Eq. 4.15). After learning it takes the arm of the greatest Q.
+# This is what one robot has learned: for each arm the sums of rewards and times, the number of choices, and
+# Q = ΣR / ΣT (Eq. 4.15). After the learning phase it chooses the arm with the greatest Q.
 
 # %%
 robot = model.members[1][0]
 pd.DataFrame(robot.policy.snapshot())
 
 # %% [markdown]
-# Every conflict was recorded. A learner's conflict with S1 has a reward, and the Q of its arm after it.
+# Every conflict was recorded. A learner's conflict with S1 has a reward, and Q of its arm afterwards.
 
 # %%
 conflicts = model.datacollector.get_table_dataframe("conflicts")
@@ -43,8 +43,8 @@ learned_from = conflicts[(conflicts["phase"] == "learning") & conflicts["reward"
 learned_from[["robot", "start", "action", "t_a", "t_p", "active", "reward", "q"]].head()
 
 # %% [markdown]
-# One robot's trace: Q of both arms as the conflicts come in, and what it chose. The bonus of UCB, √(γ ln N
-# / N(a)), shrinks with each choice of an arm and grows while the arm waits.
+# The course of learning of one robot: Q of both arms, and its choices. The bonus of UCB, √(γ ln N / N(a)),
+# shrinks with each choice of an arm and grows while the arm is not chosen.
 
 # %%
 own = learned_from[learned_from["robot"] == robot.index]
@@ -56,8 +56,8 @@ axes.set(xlabel="time (s)", ylabel="Q of the arm after the conflict", title=f"ro
 axes.legend();
 
 # %% [markdown]
-# And of the swarm: the share of fights among its choices, in windows of 100 s. Exploration never stops
-# while it learns, so the share does not become 0 or 1.
+# The whole swarm: the share of fights among its choices, in windows of 100 s. Learners never stop exploring
+# in this phase, so the share does not reach 0 or 1.
 
 # %%
 share = learned_from.assign(
@@ -68,15 +68,15 @@ share.groupby("window")["fight"].mean().plot(ax=axes, marker="o")
 axes.set(xlabel="time (s)", ylabel="share of fights", ylim=(0, 1));
 
 # %% [markdown]
-# What the swarm learned is the share of its robots whose arm of the greatest Q is each action.
+# What the swarm learned: for each action, the share of robots whose arm with the greatest Q it is.
 
 # %%
 pd.DataFrame(policy_rows(model))
 
 # %% [markdown]
-# The crowd decides. The same against an avoiding and an attacking swarm, at three densities, two seeds
-# each: in a small crowd robots learn to flee, in a large one to fight. (`kswarms run table-6.1` does this
-# at all ten densities, over 3,000 s.)
+# The result depends on the number of robots. The same against an avoiding and an attacking swarm, at three
+# densities with two seeds each: in small crowds robots learn to flee, in large ones to fight. (`kswarms run
+# table-6.1` does this at all ten densities, with 3,000 s of learning.)
 
 # %%
 rows = []

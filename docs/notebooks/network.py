@@ -8,7 +8,7 @@
 # %% [markdown]
 # # The interaction network
 #
-# Who met whom, where, and who held whom up. All of it is in the recorded conflicts of a game.
+# Which robots met, where, and which got stuck together: the recorded conflicts of a game show it.
 
 # %%
 # %matplotlib inline
@@ -16,6 +16,7 @@ import matplotlib.pyplot as plt
 import pandas as pd
 import seaborn as sns
 
+from kswarms import ForagingModel
 from kswarms.analysis.figures.heat_maps import heat_maps
 from kswarms.analysis.figures.networks import (
     describe,
@@ -25,7 +26,6 @@ from kswarms.analysis.figures.networks import (
     mixing_matrix,
     network_figure,
 )
-from kswarms.model.foraging import ForagingModel
 
 model = ForagingModel(n=36, policies="avoid,attack", duration=600, seed=1, record="conflicts")
 model.play()
@@ -33,27 +33,27 @@ conflicts = model.datacollector.get_table_dataframe("conflicts")
 conflicts[["robot", "swarm", "opponent", "opponent_swarm", "start", "x", "y", "action", "t_a", "t_p"]].head(3)
 
 # %% [markdown]
-# Conflicts that `kswarms run … --record conflicts` has written are read by
-# `analysis.results.read_conflicts(directory)`; take those of one `run`.
+# `kswarms.read_conflicts(directory)` reads the conflicts that `kswarms run … --record conflicts` wrote;
+# select one `run`.
 #
-# ## Who met whom
+# ## Which robots met
 #
-# The network is a graph of networkx: a node for each robot, an edge for each pair that met, with how often
-# and how long. Whatever networkx computes, it computes of it.
+# The network is a networkx graph. Its nodes are robots. An edge joins two robots that met; it has the
+# number of their conflicts and the time in conflict. All functions of networkx can be applied to it.
 
 # %%
 network = meeting_network(conflicts)
 pd.Series(describe(network)).round(3)
 
 # %% [markdown]
-# `assortativity` is Newman's, by swarm-ID: above `chance`, robots meet their own more than others, below it
-# less. `assortativity_time` weights pairs by the time that they spent in conflict with each other.
+# `assortativity` is Newman's, by swarm-ID. Above `chance`, robots meet their own swarm more often than
+# others; below it, less often. `assortativity_time` weights pairs by their time in conflict.
 
 # %%
 network_figure(network, "36 robots, S1 avoids, S2 attacks")
 
 # %% [markdown]
-# The same swarm by swarm, in robot-seconds of conflict; those within a swarm count from both sides.
+# The same by swarms, in robot-seconds of conflict. Conflicts within a swarm count from both sides.
 
 # %%
 names = ["S1", "S2"]
@@ -62,7 +62,8 @@ pd.DataFrame(mixing_matrix(network, "time"), index=names, columns=names).round()
 # %% [markdown]
 # ## Jams
 #
-# At each second the conflicts that go on link robots. Three or more that hang together are a jam.
+# At each second, the conflicts in progress link robots. A connected cluster of three or more robots is a
+# jam.
 
 # %%
 jams_figure(jams(conflicts), "36 robots, S1 avoids, S2 attacks")
@@ -70,13 +71,13 @@ jams_figure(jams(conflicts), "36 robots, S1 avoids, S2 attacks")
 # %% [markdown]
 # ## Where conflicts happen
 #
-# Conflicts begun in each 5 × 5 cm, on a logarithmic scale: all, and those answered with each action.
+# Conflicts begun in each cell of 5 × 5 cm, on a logarithmic scale: all of them, and those with each action.
 
 # %%
 heat_maps(conflicts, "36 robots, S1 avoids, S2 attacks", places=model.arena)
 
 # %% [markdown]
-# ## What changes with the crowd
+# ## What changes with the number of robots
 #
 # The same measures for three pairs of policies, at three densities.
 

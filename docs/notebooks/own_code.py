@@ -6,10 +6,11 @@
 # ---
 
 # %% [markdown]
-# # Your own policy, reward and selection rule
+# # User-defined policies, rewards and rules
 #
-# A policy is a class in a file of your own. Its name, with the path, stands wherever a policy's name can
-# stand. The files here are in `docs/examples`; [Extend](../extending.md) tells what each class needs.
+# A policy is a class in a file of your own. Its name, with the path of the file, can stand wherever the
+# name of a policy can. The files used here are in `docs/examples`. [Extend](../extending.md) describes what
+# each class needs.
 
 # %%
 from functools import partial
@@ -19,10 +20,9 @@ import matplotlib.pyplot as plt
 import pandas as pd
 import seaborn as sns
 
+from kswarms import ForagingModel, make_policy
 from kswarms.agents.conformance import POLICY_CHECKS, REWARD_CHECKS, RULE_CHECKS
-from kswarms.agents.policies.spec import make_policy
 from kswarms.agents.user_code.loading import load_class
-from kswarms.model.foraging import ForagingModel
 from kswarms.model.recorder import policy_rows
 
 EXAMPLES = "../examples"
@@ -37,8 +37,9 @@ pd.DataFrame(model.results())[["swarm", "policy", "pucks", "conflicts_inter"]]
 # %% [markdown]
 # ## Check it
 #
-# What every policy, reward and rule must do is in `kswarms.agents.conformance`: the same seed gives the same
-# choices, robots share no state, a copy goes on alike, and so on. A check that fails says what is wrong.
+# `kswarms.agents.conformance` has the checks that every policy, reward and rule must pass: the same seed
+# gives the same choices, robots share no state, copies behave alike, and so on. A failing check says what
+# is wrong.
 
 # %%
 for check in POLICY_CHECKS:
@@ -48,7 +49,7 @@ for check in POLICY_CHECKS:
 # %% [markdown]
 # ## Compare it
 #
-# How patient should one be, in what crowd? Three seeds each; `patience=0` always fights.
+# Which patience is best, at which number of robots? Three seeds each; `patience=0` always fights.
 
 # %%
 rows = []
@@ -68,7 +69,7 @@ axes.set(ylabel="pucks ahead of the avoiding swarm");
 # %% [markdown]
 # ## A reward and a rule
 #
-# A learner takes both by their texts, and so does any other policy that hands them on.
+# A learner takes the names of both as arguments.
 
 # %%
 print(Path(EXAMPLES, "haste.py").read_text())

@@ -6,10 +6,10 @@
 # ---
 
 # %% [markdown]
-# # Your own scenario, and a sweep
+# # Your own scenario and sweep
 #
-# A scenario is data: conditions (curves) of swarms in a world, densities and seeds. This one asks what an
-# advantage in speed is worth to a swarm that avoids.
+# A scenario is data: conditions (curves), numbers of robots, and seeds. This one measures the effect of a
+# higher speed on a swarm that avoids.
 
 # %%
 import matplotlib.pyplot as plt
@@ -17,9 +17,7 @@ import mesa
 import pandas as pd
 import seaborn as sns
 
-from kswarms.model.foraging import ForagingModel
-from kswarms.scenarios.description.condition import Condition, SwarmRule
-from kswarms.scenarios.description.scenario import Scenario
+from kswarms import Condition, ForagingModel, Scenario, SwarmRule
 from kswarms.scenarios.runs.run import expand
 from kswarms.scenarios.runs.sweep import play_all
 
@@ -45,8 +43,8 @@ scenario = Scenario(
 print(scenario.to_toml())
 
 # %% [markdown]
-# Its runs are conditions × densities × seeds, each named by a digest of what is simulated. In a notebook
-# they are played in its own process; the command line has as many as there are CPUs.
+# Its runs are conditions × densities × seeds. A digest of everything that is simulated names each run. In a
+# notebook they are played in its own process; the command line uses one process for each CPU.
 
 # %%
 runs = expand([scenario])
@@ -58,8 +56,8 @@ results = pd.DataFrame(rows)
 results.pivot_table(index=["condition", "N"], columns="swarm", values="pucks")
 
 # %% [markdown]
-# Same seed, same start: conditions are compared seed by seed, and what remains is the difference that speed
-# makes.
+# Games with the same seed start in the same state. So the conditions are compared seed by seed, and the
+# difference is the effect of speed.
 
 # %%
 by_seed = results.pivot_table(index=["N", "seed", "swarm"], columns="condition", values="pucks")
@@ -72,9 +70,9 @@ axes.set(xlabel="number of robots in all, N", ylabel="pucks gained by S1's speed
 # %% [markdown]
 # ## The same with `mesa.batch_run`
 #
-# Every argument of `ForagingModel` is a number or a text, so Mesa's own batch runner sweeps it. Seeds are
-# values of a parameter; `iterations` would repeat the same game. In a notebook one process is simplest;
-# more need a script with the guard `if __name__ == "__main__":`.
+# Every argument of `ForagingModel` is a number or a string, so Mesa's batch runner can sweep it. Pass seeds
+# as values of the parameter `seed`; `iterations` would repeat the same game. In a notebook, one process is
+# simplest. More processes need a script with the guard `if __name__ == "__main__":`.
 
 # %%
 swept = mesa.batch_run(
