@@ -9,18 +9,10 @@ ROBOT_SECONDS_PER_PUCK: Final = 300.0
 
 
 def cpu_seconds(n: int, learning: float, duration: float, puck_limit: int | None, period: float) -> float:
-    """Estimate the CPU time of a run (s): proportional to robots × seconds of play.
+    """Estimate the CPU time of a run (s): proportional to robots × periods of play.
 
-    Parameters
-    ----------
-    n : int
-        Robots in all.
-    learning, duration : float
-        Durations of the learning and of the measured game (s).
-    puck_limit : int, optional
-        Number of pucks that ends the game.
-    period : float
-        Control period (s).
+    The parameters are the number of robots, the durations of learning and game (s), the number of pucks that
+    ends the game, and the control period (s).
     """
     if puck_limit is not None:
         duration = min(duration, puck_limit * ROBOT_SECONDS_PER_PUCK / n)

@@ -14,27 +14,9 @@ from kswarms.scenarios.runs.run import Run, code_version
 def play_through(
     executor: Executor, waiting: deque[Run], at_once: int, record: str
 ) -> Generator[tuple[Run, Outcome | Failure | None, float], None, None]:
-    """Play runs through an executor, and yield each as it ends.
+    """Play runs through an executor, at most `at_once` at a time, and yield each with its result as it ends.
 
-    Parameters
-    ----------
-    executor : concurrent.futures.Executor
-        Plays the runs.
-    waiting : deque of Run
-        The runs, in order. If the executor breaks, those that it had not accepted remain.
-    at_once : int
-        Maximum number of runs submitted at the same time.
-    record : str
-        Names of the tables to record, separated by commas.
-
-    Yields
-    ------
-    run : Run
-        A run that ended.
-    result : Outcome, Failure or None
-        Its result; None if the executor broke during the run.
-    seconds : float
-        Its CPU time (s).
+    The result is None if the executor broke during the run. Runs not yet submitted then stay in `waiting`.
     """
     ended: SimpleQueue[Future[Any]] = SimpleQueue()
     playing: dict[Future[Any], Run] = {}

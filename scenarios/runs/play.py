@@ -31,18 +31,7 @@ def play(run: Run, record: str = "") -> Outcome:
 
 @contextmanager
 def finished_game(run: Run, record: str = "") -> Iterator[GameModel]:
-    """Play a run and yield its model at the end of the game; free the model afterwards.
-
-    Parameters
-    ----------
-    run, record
-        As for `play`.
-
-    Raises
-    ------
-    RunError
-        If the game fails, or whatever is done with the model.
-    """
+    """Play a run as `play` does and yield its model at the end of the game; free the model afterwards."""
     with run_errors(str(run)):
         require_unchanged(run)
         model = GameModel(run.game, seed=run.seed, record=record)
@@ -55,13 +44,7 @@ def finished_game(run: Run, record: str = "") -> Iterator[GameModel]:
 
 @contextmanager
 def run_errors(game: str) -> Iterator[None]:
-    """Raise every error as a `RunError` that names the game, since user-defined policies may raise anything.
-
-    Parameters
-    ----------
-    game : str
-        Name of the game in the message.
-    """
+    """Raise every error as a `RunError` that names the game; user-defined policies may raise anything."""
     try:
         yield
     except (Exception, SystemExit) as error:
@@ -70,14 +53,9 @@ def run_errors(game: str) -> Iterator[None]:
 
 
 def attempt(run: Run, record: str, code: str) -> tuple[Outcome | Failure, float]:
-    """Play a run and return its result, a failure included, with its CPU time (s).
+    """Play a run as `play` does; return its outcome or failure, and its CPU time (s).
 
-    Parameters
-    ----------
-    run, record
-        As for `play`.
-    code : str
-        The required `code_version`; a worker of a cluster may have another.
+    The worker must have the code version `code`, since workers of a cluster may have another.
     """
     if code != code_version():
         return Failure(f"the worker has kswarms {code_version()}, it must have {code}"), 0.0

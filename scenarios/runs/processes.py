@@ -27,19 +27,10 @@ _DEATHS: Final = f"its worker process died {TRIES} times: killed or out of memor
 
 
 def play_in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[Result, None, None]:
-    """Play runs in worker processes.
+    """Play runs in `jobs` worker processes, and yield each result as its run ends.
 
     A process that dies breaks the executor, and any of the runs played then may be the cause (too much
     memory, for example). These runs are retried one at a time.
-
-    Parameters
-    ----------
-    waiting : deque of Run
-        The runs, in order.
-    jobs : int
-        Number of processes.
-    record : str
-        Names of the tables to record, separated by commas.
 
     Raises
     ------

@@ -81,23 +81,8 @@ def digests(game: Game, seeds: Iterable[int]) -> list[str]:
 
 
 def describe_curve(condition: Condition, n: int) -> str:
-    """Return everything that decides the results of a curve, except number of robots and seed, as JSON.
-
-    Parameters
-    ----------
-    condition : Condition
-        The curve.
-    n : int
-        Any of its numbers of robots.
-    """
-    game = condition.game(n)
-    return _json(
-        {
-            "condition": condition.model_dump(mode="json"),
-            "parameters": game.parameters.model_dump(mode="json"),  # the values of a preset may change
-            "files": _file_hashes(game),
-        }
-    )
+    """Return all that decides the results of a curve, except seed and `n` (any of its densities), as JSON."""
+    return _json({"condition": condition.model_dump(mode="json"), "files": _file_hashes(condition.game(n))})
 
 
 def _json(content: object) -> str:
@@ -113,7 +98,6 @@ def _file_hashes(game: Game) -> list[str]:
 
 
 def _files(game: Game) -> list[Path]:
-    """Return the files of learned policies and user code that a game loads."""
     specs = (spec for swarm in game.swarms for spec in parse_policies(swarm.policy))
     return [file for spec in specs for file in spec.files()]
 
@@ -137,15 +121,7 @@ def require_unchanged(run: Run) -> None:
 
 
 def expand(scenarios: Iterable[Scenario], first_seed: int = 0) -> list[Run]:
-    """Return the runs of scenarios: conditions × densities × seeds, each game and seed once.
-
-    Parameters
-    ----------
-    scenarios : iterable of Scenario
-        The scenarios.
-    first_seed : int
-        The first of their consecutive seeds.
-    """
+    """Return the runs of scenarios: conditions × densities × consecutive seeds, each game and seed once."""
     runs: dict[str, Run] = {}
     for scenario in scenarios:
         seeds = range(first_seed, first_seed + scenario.seeds)

@@ -36,14 +36,7 @@ CREATE TABLE sessions (id INTEGER PRIMARY KEY, about TEXT NOT NULL);
 
 
 class Database:
-    """The open file of a ledger.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    new : bool
-        Whether to create the file unless it exists.
+    """The open file of a ledger; created unless it exists if `new`. A context manager.
 
     Raises
     ------
@@ -86,15 +79,11 @@ class Database:
                 f" PRAGMA user_version = {_FORMAT}; COMMIT;"
             )
 
-    def close(self) -> None:
-        """Close the file."""
-        self._db.close()
-
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_error: object) -> None:
-        self.close()
+        self._db.close()
 
     @contextmanager
     def _transaction(self) -> Generator[None, None, None]:

@@ -6,7 +6,6 @@ curves are rows of another table. Each run is committed on its own, by the one p
 
 import json
 from collections.abc import Iterable, Iterator, Sequence
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from kswarms import __version__
@@ -14,7 +13,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.model.description.game import Game
 from kswarms.scenarios.runs.outcome import Failure, Outcome
 from kswarms.scenarios.runs.run import Run, code_version, digest
-from kswarms.scenarios.study.database import LEDGER_FILE, Database
+from kswarms.scenarios.study.database import Database
 
 Curve = tuple[str, str]
 """Scenario and condition."""
@@ -36,16 +35,7 @@ class Ledger(Database):
     # ----------------------------------------------------------------------------------------------- requests
 
     def plan(self, scenarios: dict[str, str], curves: dict[Curve, str], runs: Sequence[Run]) -> None:
-        """Add runs, and the scenarios that contain them.
-
-        Parameters
-        ----------
-        scenarios : dict of str to str
-            The TOML of each scenario, by id.
-        curves : dict of (scenario, condition) to str
-            The description of each curve (`kswarms.scenarios.runs.run.describe_curve`).
-        runs : sequence of Run
-            The runs.
+        """Add runs, the TOML of their scenarios by id, and the descriptions of their curves.
 
         Raises
         ------
@@ -98,20 +88,9 @@ class Ledger(Database):
     def add(
         self, run: Run, result: Outcome | Failure, seconds: float, records: dict[str, bytes] | None = None
     ) -> None:
-        """Store the result of a planned run.
+        """Store the result of a planned run, its CPU time (s) and its packed records by name.
 
-        A run that is done, is replayed for a recorded table and fails keeps its status and results.
-
-        Parameters
-        ----------
-        run : Run
-            The run.
-        result : Outcome or Failure
-            Its result.
-        seconds : float
-            CPU time (s).
-        records : dict of str to bytes, optional
-            Its recorded tables by name, each packed.
+        A run that is done and fails when it is replayed for a record keeps its status and results.
         """
         error: tuple[str | None, str | None] = (None, None)
         played = (code_version(), seconds)
@@ -212,22 +191,3 @@ class Ledger(Database):
     def scenarios(self) -> dict[str, str]:
         """Return the latest TOML of each scenario, by id."""
         return dict(self.query("SELECT id, toml FROM scenarios ORDER BY id"))
-
-
-def find_run(directory: Path, name: str) -> Run:
-    """Return the run with a digest from the ledger of a directory.
-
-    Parameters
-    ----------
-    directory : Path
-        Directory of ``kswarms run --out``.
-    name : str
-        The digest: the column ``run`` of its tables.
-
-    Raises
-    ------
-    InputError
-        If there is no ledger, or as for `Ledger.run`.
-    """
-    with Ledger(directory / LEDGER_FILE) as ledger:
-        return ledger.run(name)

@@ -23,14 +23,9 @@ _RETRY_INTERVAL: Final = 0.005
 
 @contextmanager
 def directory_lock(directory: Path, command: str) -> Iterator[None]:
-    """Hold the lock of a directory. The operating system releases it if this process is killed.
+    """Hold the lock of a directory; the file names the process and its command.
 
-    Parameters
-    ----------
-    directory : Path
-        The results directory.
-    command : str
-        The command that plays, for other users of the directory.
+    The operating system releases the lock if the process is killed.
 
     Raises
     ------

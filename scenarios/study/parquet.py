@@ -53,19 +53,9 @@ def pack(records: Mapping[str, Mapping[str, list[Any]]]) -> dict[str, bytes]:
 
 
 def export(ledger: Ledger, directory: Path) -> list[Path]:
-    """Write the tables of all finished runs; their bytes do not depend on the order of playing.
+    """Write the tables of all finished runs to a directory; return the files.
 
-    Parameters
-    ----------
-    ledger : Ledger
-        The finished runs.
-    directory : Path
-        Directory of the files.
-
-    Returns
-    -------
-    list of Path
-        The files: one for each table that has rows or was recorded.
+    There is a file for each table that has rows or was recorded. Its bytes do not depend on the order of play.
 
     Raises
     ------

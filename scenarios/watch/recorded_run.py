@@ -7,7 +7,8 @@ from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.contribution.table import find_row
 from kswarms.scenarios.runs.run import Run, digest
-from kswarms.scenarios.study.ledger import find_run
+from kswarms.scenarios.study.database import LEDGER_FILE
+from kswarms.scenarios.study.ledger import Ledger
 
 
 def recorded_run(directory: Path, name: str) -> Run:
@@ -26,7 +27,10 @@ def recorded_run(directory: Path, name: str) -> Run:
         If the directory does not have the run, or this version would play another game.
     """
     row = find_row(directory, name)
-    return find_run(directory, name) if row is None else _compared_run(row, name)
+    if row is not None:
+        return _compared_run(row, name)
+    with Ledger(directory / LEDGER_FILE) as ledger:
+        return ledger.run(name)
 
 
 def _compared_run(row: dict[str, Any], name: str) -> Run:

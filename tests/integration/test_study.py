@@ -18,8 +18,9 @@ from kswarms.scenarios.runs.outcome import Failure
 from kswarms.scenarios.runs.play import play
 from kswarms.scenarios.runs.run import expand
 from kswarms.scenarios.study.database import LEDGER_FILE
-from kswarms.scenarios.study.ledger import Ledger, find_run
+from kswarms.scenarios.study.ledger import Ledger
 from kswarms.scenarios.study.study import Study
+from kswarms.scenarios.watch.recorded_run import recorded_run
 from tests.helpers.tiny_study import RUN, TINY, Fault, sessions
 
 pytestmark = pytest.mark.usefixtures("with_a_file_of_scenarios")
@@ -119,7 +120,7 @@ def test_a_replay_that_differs_is_told(
 ) -> None:
     assert invoke([*RUN, "--seeds", "1"]) == 0
     name = pq.read_table("results/runs.parquet")["run"][0].as_py()
-    run = find_run(Path("results"), name)
+    run = recorded_run(Path("results"), name)
     assert run == next(each for each in expand([TINY]) if each.digest == name)
     real = GameModel.results
     monkeypatch.setattr(GameModel, "results", lambda model: [row | {"pucks": 99} for row in real(model)])

@@ -17,9 +17,9 @@ from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.description.condition import Condition, SwarmRule
 from kswarms.scenarios.study import lock
 from kswarms.scenarios.study.database import LEDGER_FILE
-from kswarms.scenarios.study.ledger import find_run
 from kswarms.scenarios.study.lock import LOCK_FILE, lock_holder
 from kswarms.scenarios.study.study import Study
+from kswarms.scenarios.watch.recorded_run import recorded_run
 from tests.helpers.tiny_study import RUN, TINY, contents, sessions
 
 pytestmark = pytest.mark.usefixtures("with_a_file_of_scenarios")
@@ -122,7 +122,7 @@ def test_learned_policies_that_changed_make_another_curve(tmp_path: Path) -> Non
     with Study(Path("results")) as study, pytest.raises(InputError, match="has runs of a different tiny"):
         study.plan([loading.replace(densities=(8,))])
     with pytest.raises(InputError, match="loads a file that has changed"):
-        find_run(Path("results"), run.digest)
+        recorded_run(Path("results"), run.digest)
 
 
 def test_runs_of_another_version_are_refused(

@@ -13,7 +13,6 @@ from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.contribution.table import SCHEMA
 from kswarms.scenarios.runs.run import digest
-from kswarms.scenarios.study.ledger import find_run
 from kswarms.scenarios.watch.conflicts import HEADINGS, conflicts_of
 from kswarms.scenarios.watch.recorded_run import recorded_run
 
@@ -71,7 +70,7 @@ def test_a_recorded_run_is_filmed_and_told_again(capsys: pytest.CaptureFixture[s
     assert invoke(["conflicts", "--run", name, "results", "--robot", "2", "--to", "300"]) == 0
     header, *lines = capsys.readouterr().out.splitlines()[1:]
     assert header.split("  ")[0] == HEADINGS[0]
-    run = find_run(Path("results"), name)
+    run = recorded_run(Path("results"), name)
     assert run.seed == 3
     expected = [
         account for account in conflicts_of(run) if account.row["robot"] == 2 and account.row["start"] <= 300
