@@ -55,7 +55,7 @@ def pack(records: Mapping[str, Mapping[str, list[Any]]]) -> dict[str, bytes]:
 def export(ledger: Ledger, directory: Path) -> list[Path]:
     """Write the tables of all finished runs to a directory; return the files.
 
-    There is a file for each table that has rows or was recorded. Its bytes do not depend on the order of play.
+    A file is written for each table with rows or records. Their bytes do not depend on the order of play.
 
     Raises
     ------
