@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.policies.spec import PolicyLike
 from kswarms.agents.user_code.syntax import split_outside
 from kswarms.model.description.game import Game, Swarm, apportion
 from kswarms.model.game_model import GameModel
@@ -18,8 +19,9 @@ class ForagingModel(GameModel):
     ----------
     n : int
         Number of robots.
-    policies : str or sequence of str
-        Policy of each swarm, as a sequence or separated by commas; their number is the number of swarms.
+    policies : str or sequence
+        Policy of each swarm: texts separated by commas, or a sequence whose elements are texts, classes,
+        callables, or lists of these. Their number is the number of swarms.
     shares : str
         Proportions of the sizes of the swarms, for example ``7:6``; equal if empty.
     drives : str
@@ -39,7 +41,7 @@ class ForagingModel(GameModel):
     def __init__(
         self,
         n: int = 20,
-        policies: str | Sequence[str] = "avoid,attack",
+        policies: str | Sequence[PolicyLike] = "avoid,attack",
         shares: str = "",
         drives: str = "",
         seed: int = 0,
@@ -54,7 +56,7 @@ class ForagingModel(GameModel):
         )
 
 
-def _swarms(n: int, policies: str | Sequence[str], shares: str, drives: str) -> tuple[Swarm, ...]:
+def _swarms(n: int, policies: str | Sequence[PolicyLike], shares: str, drives: str) -> tuple[Swarm, ...]:
     if not isinstance(policies, Sequence) or not policies:
         raise InputError("policies", policies, "must be a text or a sequence, one policy per swarm")
     names = split_outside(policies, ",") if isinstance(policies, str) else policies

@@ -182,7 +182,7 @@ def _result_row(state: GameState, k: int, t_a: list[int], t_p: int) -> dict[str,
     return {
         "swarm": k + 1,
         "size": len(members),
-        "policy": state.game.swarms[k].policy,
+        "policy": state.game.swarms[k].policy_name,
         "pucks": state.pucks[k],
         "sud": swarm_utility_difference(state.pucks, k),
         "t_a_intra": seconds(t_a[k]),

@@ -63,7 +63,8 @@ class InputError(ValueError):
         path = ".".join(map(str, parts))
         cause = first.get("ctx", {}).get("error")
         if isinstance(cause, InputError):
-            return cls(f"{path}.{cause.field}" if path else cause.field, cause.value, cause.allowed)
+            outer_path = path.removesuffix(cause.field).removesuffix(".")  # a validator may name its field
+            return cls(f"{outer_path}.{cause.field}".removeprefix("."), cause.value, cause.allowed)
         if unknown:
             return cls(path, first["input"], f"no such field; there are {', '.join(fields)}")
         if first["type"] == "missing":

@@ -1,14 +1,15 @@
 """Fields of a game that do not depend on the number of robots. `Game` and scenario conditions extend them."""
 
-from typing import Any, Final, Literal, get_args
+from typing import Annotated, Any, Final, Literal, get_args
 
-from pydantic import Field, model_validator
+from pydantic import Field, InstanceOf, field_serializer, model_validator
 
 from kswarms.agents.actions import Action
 from kswarms.agents.body import BODIES, Body
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.limits import LONGEST_DISTANCE, LONGEST_TIME, MOST_PLACES, MOST_PUCKS
+from kswarms.agents.policies.spec import PolicySpec, parse_policies
 from kswarms.model.description.parameters import PRESETS, Parameters, parse_parameters
 
 Layout = Literal["symmetric", "nearer-station", "random-stations"]
@@ -22,15 +23,34 @@ class SwarmFields(Checked):
 
     Attributes
     ----------
-    policy : str
-        Policy of its robots, or several, dealt out (see `kswarms.agents.policies.spec.deal`).
+    policy : str, class, callable, or sequence of these
+        One policy, or several that are dealt out to the robots (see `kswarms.agents.policies.spec.deal`).
+        Stored as a text where it has one.
     drive, drive_action : float
         Drive command in state P and in state A, as a fraction of the top speed.
     """
 
-    policy: str = Field(min_length=1)
+    policy: Annotated[str, Field(min_length=1)] | tuple[InstanceOf[PolicySpec], ...]
     drive: float = Field(0.6, gt=0, le=1)
     drive_action: float = Field(0.6, gt=0, le=1)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _write_policy(cls, values: Any) -> Any:
+        if not isinstance(values, dict) or isinstance(values.get("policy", ""), str):
+            return values
+        specs = parse_policies(values["policy"])
+        text = all(spec.call is not None for spec in specs)
+        return {**values, "policy": "+".join(map(str, specs)) if text else specs}
+
+    @field_serializer("policy")
+    def _dump_policy(self, _: object) -> str:
+        return self.policy_name
+
+    @property
+    def policy_name(self) -> str:
+        """Text of the policy, or a description of a class or callable that has none."""
+        return self.policy if isinstance(self.policy, str) else "+".join(map(str, self.policy))
 
 
 class GameFields(Checked):

@@ -3,11 +3,12 @@
 import math
 from typing import Any, Final
 
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from kswarms.agents.body import BODIES
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.limits import LONGEST_NAME
+from kswarms.agents.policies.spec import parse_policies
 from kswarms.model.description.fields import GameFields, SwarmFields
 from kswarms.model.description.game import Game, Swarm, apportion
 from kswarms.model.description.parameters import text_of
@@ -23,11 +24,19 @@ class SwarmRule(SwarmFields):
 
     Attributes
     ----------
+    policy : str, class, callable, or sequence of these
+        As for a swarm of a game; a class or callable must be importable, so that it has a text.
     share : int
         Share of all robots, in proportion to the shares of the other swarms.
     """
 
+    policy: str = Field(min_length=1)
     share: int = Field(default=1, ge=1)
+
+    @field_validator("policy", mode="before")
+    @classmethod
+    def _require_text(cls, policy: Any) -> Any:
+        return policy if isinstance(policy, str) else "+".join(spec.text for spec in parse_policies(policy))
 
 
 class Condition(GameFields):

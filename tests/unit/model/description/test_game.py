@@ -3,18 +3,21 @@
 import json
 import math
 import pickle
+from functools import partial
 from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kswarms.agents.actions import Action
+from kswarms.agents.actions import TOWARDS, Action
 from kswarms.agents.body import BODIES, KREMBOT, Body
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.policies.interface import Setting
 from kswarms.model.description.fields import LAYOUTS
 from kswarms.model.description.game import Game, Swarm, apportion
 from kswarms.model.description.parameters import PRESETS
+from kswarms.model.game_model import GameModel
 
 AVOID = Swarm(policy="avoid", size=10)
 FITTED = PRESETS["fitted"]
@@ -39,6 +42,32 @@ def test_a_game_is_a_value() -> None:
     assert game() == game()
     assert hash(game()) == hash(game())
     assert pickle.loads(pickle.dumps(game(supply=3))) == game(supply=3) != game()
+
+
+class Fearless:
+    def __init__(self, setting: Setting, nerve: float = 1.0) -> None:
+        self.fight = setting.first(TOWARDS)
+
+    def choose(self, opponent: int) -> Action:
+        return self.fight
+
+
+def test_policies_are_texts_classes_callables_or_lists() -> None:
+    def local(setting: Setting) -> Fearless:
+        return Fearless(setting)
+
+    assert Swarm(policy=["avoid", "mixed"], size=3) == Swarm(policy="avoid+avoid+aggressive", size=3)
+    importable = Swarm(policy=[partial(Fearless, nerve=0.5), "avoid"], size=2)
+    assert importable.policy == f"{__name__}:Fearless(nerve=0.5)+avoid"
+    model = GameModel(game(swarms=[{"policy": local, "size": 2}, importable], duration=1.0))
+    model.play()
+    names = [robot.policy_name for robot in model.robots]
+    assert names[0] == names[1] == model.results()[0]["policy"]
+    assert names[0].endswith("<locals>.local")
+    assert names[2:] == importable.policy.split("+")
+    assert all(isinstance(robot.policy, Fearless) for robot in model.members[0])
+    with pytest.raises(InputError, match=r"^policy=3: must be a text, a class"):
+        Swarm(policy=3, size=1)
 
 
 def test_actions_of_its_own_replace_the_standard_ones() -> None:

@@ -203,11 +203,11 @@ def test_learners_have_the_opponents_reward_and_rule_of_the_source(
     assert isinstance(built, Learner)
     assert [opponent + 1 for opponent in built.bandits] == list(expected.about)
     assert built.rule == expected.rule
-    assert type(built._reward) is type(expected.reward)
+    assert type(built.reward) is type(expected.reward)
     for opponent in expected.about:
         for t_a, t_p in ((1.0, 0.0), (0.0, 1.0)):
             conflict = (t_a, t_p, 8, 1, opponent != swarm + 1, opponent)
-            assert built._reward.of(*conflict) == pytest.approx(expected.reward.of(*conflict))
+            assert built.reward.of(*conflict) == pytest.approx(expected.reward.of(*conflict))
     others = {built.choose(other).name for other in range(len(game.swarms)) if other not in built.bandits}
     assert others <= {"flight"}
 

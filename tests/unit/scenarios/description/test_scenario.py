@@ -191,6 +191,9 @@ def test_a_swarm_needs_robots_and_a_condition_needs_swarms() -> None:
         SwarmRule(policy="avoid", share=0)
     with pytest.raises(InputError, match=r"^policy=''"):
         SwarmRule(policy="")
+    assert SwarmRule(policy=["avoid", "attack"]) == SwarmRule(policy="avoid+attack")
+    with pytest.raises(InputError, match=r"^policy='.*lambda>': cannot be imported"):
+        SwarmRule(policy=lambda setting: None)
     with pytest.raises(InputError, match=r"^swarms="):
         Condition(swarms=())
     with pytest.raises(InputError, match=r"^multiple_of=0"):
