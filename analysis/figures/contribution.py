@@ -14,8 +14,8 @@ from kswarms.analysis.measures.contribution import (
     measures_of,
     of_question,
     rank_correlations,
-    read,
 )
+from kswarms.analysis.results.records import read_contributions
 from kswarms.analysis.statistics.intervals import fewest_seeds
 from kswarms.analysis.tables.contribution import estimate_text
 
@@ -98,7 +98,7 @@ def write_contribution_figure(directory: Path, title: str = "", **question: obje
     InputError
         The table cannot be read, or the figure cannot be written; then an existing file is unchanged.
     """
-    rows = of_question(read(directory), **question)
+    rows = of_question(read_contributions(directory), **question)
     path = directory / "figures" / f"contribution-{rows['scenario'].iloc[0]}.png"
     save(contribution_figure(rows, title), path)
     return path

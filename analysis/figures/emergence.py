@@ -5,105 +5,14 @@ Choices and Q are of rows of `conflicts.parquet`, or of the table of a model's D
 `robots.parquet`.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from kswarms.agents.common.errors import InputError
 from kswarms.analysis.figures.style import CONDITION_COLOURS, CONDITION_MARKERS, legend_below, sheet
-
-BINS = 40
-"""Intervals that the time of a game is divided into."""
-
-_BANDIT = ["swarm", "opponent_swarm"]
-
-
-def learning_conflicts(conflicts: pd.DataFrame) -> pd.DataFrame:
-    """Return the conflicts in the learning phase that a learner's bandit decided.
-
-    Parameters
-    ----------
-    conflicts : pandas.DataFrame
-        Conflicts of one game.
-
-    Raises
-    ------
-    InputError
-        Nobody learned.
-    """
-    learned = conflicts[conflicts["q"].notna()]
-    if learned.empty:
-        raise InputError("conflicts", "no row with a Q", "must be of a game with a learner")
-    bandits = pd.MultiIndex.from_frame(learned[_BANDIT].drop_duplicates())
-    decided = pd.MultiIndex.from_frame(conflicts[_BANDIT]).isin(bandits)
-    return conflicts[decided & (conflicts["phase"] == "learning")]
-
-
-def choices(conflicts: pd.DataFrame, by: Sequence[str] = ()) -> pd.DataFrame:
-    """Return the share of each action among the choices of learners, over the time of learning.
-
-    Parameters
-    ----------
-    conflicts : pandas.DataFrame
-        Conflicts of one game.
-    by : sequence of str
-        What to tell apart besides the swarms: ``robot``, or nothing.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row for each `swarm`, `opponent_swarm` (int64), column of `by`, `time` (float64, s: the middle of
-        one of `BINS` intervals) and `action` (str), with `share` (float64): its conflicts of all in that
-        interval. An interval without conflicts has no row.
-
-    Raises
-    ------
-    InputError
-        Nobody learned.
-    """
-    rows = learning_conflicts(conflicts)
-    rows = rows.assign(time=_middles(rows["start"]))
-    key = [*_BANDIT, *by, "time"]
-    counts = rows.groupby([*key, "action"]).size().unstack(fill_value=0)
-    shares = counts.div(counts.sum(axis=1), axis=0)
-    return shares.reset_index().melt(key, var_name="action", value_name="share")
-
-
-def values(conflicts: pd.DataFrame) -> pd.DataFrame:
-    """Return Q of each learner's arms over the time of learning (Eq. 4.15).
-
-    Parameters
-    ----------
-    conflicts : pandas.DataFrame
-        Conflicts of one game.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row for each `swarm`, `opponent_swarm`, `robot` (int64), `action` (str) and `time` (float64, s:
-        the middle of one of `BINS` intervals), with `q` (float64, reward a second): the last value by then.
-        An arm has no row before it was first tried.
-
-    Raises
-    ------
-    InputError
-        Nobody learned.
-    """
-    rows = learning_conflicts(conflicts).dropna(subset="q").sort_values("start")
-    rows = rows.assign(time=_middles(rows["start"]))
-    arms = [*_BANDIT, "robot", "action"]
-    last = rows.groupby([*arms, "time"])["q"].last().unstack("time").ffill(axis=1)
-    return last.reset_index().melt(arms, var_name="time", value_name="q").dropna(subset="q")
-
-
-def _middles(start: pd.Series) -> np.ndarray:
-    edges = np.linspace(0, start.max() * (1 + 1e-9), BINS + 1)
-    bins = np.clip(np.digitize(start, edges) - 1, 0, BINS - 1)
-    return (edges[bins] + edges[bins + 1]) / 2
-
+from kswarms.analysis.measures.emergence import BANDIT, arm_values, choices, preferences
 
 def choices_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
     """Draw the share of each action over the time of learning; thick lines are swarms, thin lines robots.
@@ -145,8 +54,8 @@ def values_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
     InputError
         There is no learner.
     """
-    robots = values(conflicts)
-    means = robots.groupby([*_BANDIT, "action", "time"])["q"].mean().reset_index()
+    robots = arm_values(conflicts)
+    means = robots.groupby([*BANDIT, "action", "time"])["q"].mean().reset_index()
 
     def draw(axes: Axes, bandit: tuple[int, int]) -> None:
         _draw_over_time(axes, _of_bandit(robots, bandit), _of_bandit(means, bandit), "q")
@@ -175,7 +84,7 @@ def _panels(
     legend: str = "thick: swarm, thin: its robots",
 ) -> Figure:
     """Draw a panel for each pair of a learning swarm and an opponent."""
-    bandits = sorted({(int(swarm), int(opponent)) for swarm, opponent in rows[_BANDIT].to_numpy()})
+    bandits = sorted({(int(swarm), int(opponent)) for swarm, opponent in rows[BANDIT].to_numpy()})
     with sheet(title, width=max(7.0, 5.0 * len(bandits)), height=4.4) as figure:
         panels = figure.subplots(1, len(bandits), sharey=True, squeeze=False)[0]
         for axes, bandit in zip(panels, bandits, strict=True):
@@ -191,37 +100,6 @@ def _panels(
 def _name(bandit: tuple[int, int]) -> str:
     swarm, opponent = bandit
     return f"S{swarm} within itself" if swarm == opponent else f"S{swarm} against S{opponent}"
-
-
-def preferences(robots: pd.DataFrame) -> pd.DataFrame:
-    """Return what each learner thinks of its arms at the end.
-
-    Parameters
-    ----------
-    robots : pandas.DataFrame
-        Rows of `robots.parquet`, of one game or several.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row for each `run` (if `robots` have it), `swarm`, `opponent_swarm`, `robot` (int64) and `action`
-        (str) that was tried, with `q` (float64, reward a second) and `learned` (bool): whether it is the
-        robot's best.
-
-    Raises
-    ------
-    InputError
-        Nobody learned.
-    """
-    names = [name for name in ("run", "swarm", "robot") if name in robots]
-    arms = robots[[*names, "arms"]].explode("arms").dropna(subset="arms").reset_index(drop=True)
-    if arms.empty:
-        raise InputError("robots", "no arms", "must be of a game with a learner")
-    told = pd.DataFrame(arms["arms"].tolist())[["opponent", "action", "q"]]
-    rows = pd.concat([arms[names], told.rename(columns={"opponent": "opponent_swarm"})], axis=1)
-    rows = rows.dropna(subset="q")
-    best = rows.groupby([*names, "opponent_swarm"])["q"].transform("max")
-    return rows.assign(learned=rows["q"] == best)
 
 
 def preferences_figure(robots: pd.DataFrame, title: str = "") -> Figure:

@@ -12,32 +12,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.colours import swarm_colour
 from kswarms.analysis.figures.style import sheet
 from kswarms.analysis.film.painter import Places
-
-CELL = 0.05
-"""Side of a cell of a heat map (m)."""
-
-
-def density(conflicts: pd.DataFrame, half: float = 1.0) -> np.ndarray:
-    """Count where conflicts began.
-
-    Parameters
-    ----------
-    conflicts : pandas.DataFrame
-        Conflicts of one game or several.
-    half : float
-        Half the side of the arena (m).
-
-    Returns
-    -------
-    ndarray of float64, shape (2 · half / CELL, 2 · half / CELL)
-        Conflicts in each cell in a game, on average over the games (by their column `run`, if there is one).
-        Row i is the i-th cell in y from below, column j the j-th in x from the left.
-    """
-    edges = np.linspace(-half, half, round(2 * half / CELL) + 1)
-    counts, *_ = np.histogram2d(conflicts["y"], conflicts["x"], bins=(edges, edges))
-    games = conflicts["run"].nunique() if "run" in conflicts else 1
-    return np.asarray(counts / max(games, 1))
-
+from kswarms.analysis.measures.conflict_density import CELL, conflict_density
 
 def heat_maps(conflicts: pd.DataFrame, title: str = "", places: Places | None = None) -> Figure:
     """Draw where conflicts happen: all of them, and those with each action.
@@ -71,13 +46,13 @@ def heat_maps(conflicts: pd.DataFrame, title: str = "", places: Places | None = 
         kinds |= {f"{action}: {len(rows):,}": rows for action, rows in of_action.items()}
     games = conflicts["run"].nunique() if "run" in conflicts else 1
     # Logarithmic, or a corner in which two hold each other would leave the rest of the arena black.
-    norm = LogNorm(1 / games, max(density(conflicts, half).max(), 2 / games))
+    norm = LogNorm(1 / games, max(conflict_density(conflicts, half).max(), 2 / games))
     colours = colormaps["magma"].with_extremes(bad="black")
     side = f"{100 * CELL:.0f}"
     with sheet(title, width=max(5.5, 4.0 * len(kinds)), height=4.4) as figure:
         panels = figure.subplots(1, len(kinds), squeeze=False, sharey=True)[0]
         for axes, (name, rows) in zip(panels, kinds.items(), strict=True):
-            counts = density(rows, half) * (rows["run"].nunique() / games if "run" in rows else 1)
+            counts = conflict_density(rows, half) * (rows["run"].nunique() / games if "run" in rows else 1)
             image = axes.imshow(
                 np.ma.masked_equal(counts, 0),
                 norm=norm,

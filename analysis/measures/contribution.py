@@ -6,7 +6,6 @@ the same game without it. Rows of one question are compared: one scenario, condi
 
 import warnings
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -21,7 +20,6 @@ from kswarms.analysis.statistics.intervals import Interval, bootstrap_interval
 from kswarms.analysis.statistics.means import with_intervals
 
 Floats = NDArray[np.float64]
-FILE: Final = "contribution.parquet"
 FEWEST_ROBOTS: Final = 3
 """Of which ranks are compared: two are in the same order or they are not."""
 
@@ -51,26 +49,6 @@ def time_sud(conflicts: Mapping[str, Sequence[Any]], swarms: int) -> list[float]
         for swarm, utility in zip(of_swarms["swarm"], of_swarms["utility"], strict=True):
             utilities[swarm - 1] = utility
     return [swarm_utility_difference(utilities, swarm) for swarm in range(swarms)]
-
-
-def read(directory: Path) -> pd.DataFrame:
-    """Read `contribution.parquet`, one row for each game and robot.
-
-    Parameters
-    ----------
-    directory : Path
-        The directory that `kswarms contribution --out` wrote.
-
-    Raises
-    ------
-    InputError
-        If there is no such table that can be read.
-    """
-    path = directory / FILE
-    try:
-        return pd.read_parquet(path)
-    except (OSError, ValueError) as error:
-        raise InputError("results", str(path), "must be a table that `kswarms contribution` wrote") from error
 
 
 def of_question(rows: pd.DataFrame, **question: object) -> pd.DataFrame:

@@ -8,11 +8,10 @@ from pathlib import Path
 from typing import Any, Final
 
 import pandas as pd
-import pyarrow as pa
-import pyarrow.parquet as pq
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.report.page import Part
+from kswarms.analysis.results.tables import count_rows
 from kswarms.analysis.text_tables import PrintedTable
 
 MANIFEST_FILE: Final = "manifest.json"
@@ -43,10 +42,7 @@ def provenance_parts(directory: Path) -> list[Part]:
 
 
 def _describe(path: Path) -> dict[str, Any]:
-    try:
-        rows = pq.read_metadata(path).num_rows
-    except (OSError, pa.ArrowException) as error:
-        raise InputError("results", str(path), "must be a readable Parquet file") from error
+    rows = count_rows(path)
     with path.open("rb") as content:
         digest = hashlib.file_digest(content, "sha256").hexdigest()
     return {"file": path.name, "rows": rows, "bytes": path.stat().st_size, "sha256": digest}

@@ -11,13 +11,7 @@ import pandas as pd
 from kswarms.analysis.figures import emergence, heat_maps, networks
 from kswarms.analysis.film.painter import Places
 from kswarms.analysis.report.page import Part
-from kswarms.analysis.results.records import (
-    CONFLICTS_FILE,
-    ROBOTS_FILE,
-    read_conflicts,
-    read_robots,
-    recorded_runs,
-)
+from kswarms.analysis.results.records import read_conflicts, read_robot_records, recorded_runs
 from kswarms.analysis.text_tables import PrintedTable, number
 
 MAX_GAMES: Final = 4
@@ -89,7 +83,7 @@ def recorded_conditions(directory: Path, runs: pd.DataFrame) -> tuple[list[Recor
     """
     order = {scenario: index for index, scenario in enumerate(dict.fromkeys(runs["scenario"]))}
     found = []
-    for name in (CONFLICTS_FILE, ROBOTS_FILE):
+    for name in ("conflicts", "robots"):
         recorded = runs[runs["run"].isin(recorded_runs(directory, name))]
         games = recorded.drop_duplicates("run").sort_values(["n", "seed"])
         conditions = [
@@ -194,7 +188,7 @@ def _emergence_part(condition: Recorded, conflicts: pd.DataFrame, name: str) -> 
 
 def robots_parts(directory: Path, condition: Recorded) -> Iterator[tuple[str, Part]]:
     """Yield the final Q of each robot of a condition and its chapter ``emergence``, if any robot learned."""
-    robots = read_robots(directory, condition.densest["run"])
+    robots = read_robot_records(directory, condition.densest["run"])
     if not robots["arms"].map(len).any():
         return
     name = condition.densest_name

@@ -74,7 +74,8 @@ def contribution(
     workers = count_workers(jobs)
 
     from kswarms.analysis.figures.contribution import write_contribution_figure
-    from kswarms.analysis.measures.contribution import of_question, read, time_sud
+    from kswarms.analysis.measures.contribution import of_question, time_sud
+    from kswarms.analysis.results.records import read_contributions
     from kswarms.analysis.tables.contribution import contribution_tables
     from kswarms.scenarios.contribution.games import contributions, robots_of
     from kswarms.scenarios.contribution.table import prepare_table, write_table
@@ -94,7 +95,7 @@ def contribution(
     question: dict[str, Any] = {"condition": name, "n": n, "absent_from": absent_from}
     figure = write_contribution_figure(out, scenario.title, scenario=scenario.id, **question)
     typer.echo(f"figure: {figure}")
-    rows = of_question(read(out), scenario=scenario.id, **question)
+    rows = of_question(read_contributions(out), scenario=scenario.id, **question)
     for heading, (header, *lines) in contribution_tables(rows):
         print_table(heading, header, lines)
 

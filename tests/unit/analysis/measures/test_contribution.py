@@ -13,17 +13,16 @@ from scipy import stats
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.figures.contribution import contribution_figure, write_contribution_figure
 from kswarms.analysis.measures.contribution import (
-    FILE,
     assumption,
     mean_contributions,
     measures_of,
     of_question,
     rank_correlations,
-    read,
     spearman,
     time_sud,
 )
 from kswarms.analysis.measures.utilities import robot_utilities, swarm_utilities
+from kswarms.analysis.results.records import read_contributions
 from kswarms.analysis.statistics.intervals import bootstrap_interval
 from kswarms.analysis.tables.contribution import contribution_tables
 
@@ -40,6 +39,7 @@ def table(seeds: int = SEEDS, robots: int = ROBOTS, swarm: int = 2, **columns: A
         for what in ("t_a", "t_a_without", "t_p", "t_p_without", "t_a_met")
     }
     question = {"scenario": "fig-6.4b", "condition": "", "n": 16, "absent_from": "game"}
+    question |= {"run": "with", "run_without": "without"}
     policy = "inter-learner(rule='greedy')"
     robots_own = {"swarm": swarm, "policy": policy, "reward": 1.0, "reward_time": 10.0}
     suds = {"sud": 0, "sud_without": 0, "time_sud": 0.0, "time_sud_without": 0.0}
@@ -273,8 +273,8 @@ def test_what_is_printed_names_robots_swarms_and_intervals() -> None:
 
 
 def test_a_figure_is_written_from_the_table(tmp_path: Path) -> None:
-    pd.concat([table(reward=noise()), table(n=26)]).to_parquet(tmp_path / FILE)
-    assert len(read(tmp_path)) == 2 * SEEDS * ROBOTS
+    pd.concat([table(reward=noise()), table(n=26)]).to_parquet(tmp_path / "contribution.parquet")
+    assert len(read_contributions(tmp_path)) == 2 * SEEDS * ROBOTS
     path = write_contribution_figure(tmp_path, n=16)
     assert path == tmp_path / "figures" / "contribution-fig-6.4b.png"
     assert path.read_bytes().startswith(b"\x89PNG")
@@ -282,12 +282,12 @@ def test_a_figure_is_written_from_the_table(tmp_path: Path) -> None:
 
 
 def test_bad_input_is_told(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="must be a table that `kswarms contribution` wrote"):
-        read(tmp_path)
-    (tmp_path / FILE).write_bytes(b"no table")
-    with pytest.raises(InputError, match="must be a table"):
-        read(tmp_path)
-    table().to_parquet(tmp_path / FILE)
+    with pytest.raises(InputError, match=r"must be a directory that holds contribution\.parquet"):
+        read_contributions(tmp_path)
+    (tmp_path / "contribution.parquet").write_bytes(b"no table")
+    with pytest.raises(InputError, match="must be a readable Parquet file"):
+        read_contributions(tmp_path)
+    table().to_parquet(tmp_path / "contribution.parquet")
     (tmp_path / "figures").write_text("in the way")
     with pytest.raises(InputError, match="must be a writable file"):
         write_contribution_figure(tmp_path)

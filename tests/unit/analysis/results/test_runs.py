@@ -5,16 +5,12 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from kswarms.agents.common.columns import names
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.results.runs import (
-    POLICIES_NUMBERS,
-    POLICIES_TEXT,
-    RUNS_NUMBERS,
-    RUNS_TEXT,
-    read_policies,
-    read_results,
-    read_runs,
-)
+from kswarms.analysis.results.runs import read_policies, read_results, read_runs
+
+RUNS_TEXT, RUNS_NUMBERS = names("runs", "text"), names("runs", "integer", "real")
+POLICIES_TEXT, POLICIES_NUMBERS = names("policies", "text"), names("policies", "integer", "real")
 
 
 @pytest.fixture
