@@ -1,0 +1,191 @@
+"""Networks of conflicts: which robots met, how much swarms mix, and jams over time.
+
+All functions take the conflicts of one game: rows of `conflicts.parquet`, or
+`model.datacollector.get_table_dataframe("conflicts")`.
+"""
+
+import networkx as nx
+import numpy as np
+import pandas as pd
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from kswarms.agents.common.errors import InputError
+
+SMALLEST_JAM = 3
+"""Minimum number of robots in a jam; two robots are only a conflict."""
+
+
+def meeting_network(conflicts: pd.DataFrame) -> nx.Graph:
+    """Return the network of robots that met.
+
+    Parameters
+    ----------
+    conflicts : pandas.DataFrame
+        Conflicts of one game.
+
+    Returns
+    -------
+    networkx.Graph
+        A node for each robot that began a conflict or was met in one, with its `swarm` (int, from 1); an edge
+        for each pair that met, with `meetings` (int): conflicts between them, begun by either; `time` (float,
+        robot-seconds): T(a) of these conflicts; and `kind` (str): ``intra`` or ``inter``.
+
+    Raises
+    ------
+    InputError
+        `conflicts` are of several games.
+    """
+    if "run" in conflicts and conflicts["run"].nunique() > 1:
+        raise InputError("conflicts", f"{conflicts['run'].nunique()} runs", "must be of one game")
+    network = nx.Graph()
+    swarms = swarms_of(conflicts)
+    for robot, swarm in sorted(swarms.items()):
+        network.add_node(robot, swarm=swarm)
+    pairs = np.sort(conflicts[["robot", "opponent"]].to_numpy(), axis=1)
+    met = (
+        pd.DataFrame({"first": pairs[:, 0], "second": pairs[:, 1], "t_a": conflicts["t_a"].to_numpy()})
+        .groupby(["first", "second"])["t_a"]
+        .agg(["size", "sum"])
+    )
+    for (first, second), (meetings, time) in zip(met.index, met.to_numpy(), strict=True):
+        kind = "intra" if swarms[first] == swarms[second] else "inter"
+        network.add_edge(int(first), int(second), meetings=int(meetings), time=float(time), kind=kind)
+    return network
+
+
+def swarms_of(conflicts: pd.DataFrame) -> dict[int, int]:
+    """Return the swarm, from 1, of each robot that began a conflict or was met in one."""
+    robots = np.concatenate([conflicts["robot"], conflicts["opponent"]])
+    swarms = np.concatenate([conflicts["swarm"], conflicts["opponent_swarm"]])
+    return {int(robot): int(swarm) for robot, swarm in zip(robots, swarms, strict=True)}
+
+
+def describe_network(network: nx.Graph) -> dict[str, float]:
+    """Describe a network of meetings in numbers.
+
+    Parameters
+    ----------
+    network : networkx.Graph
+        As `meeting_network` returns it, with at least one edge.
+
+    Returns
+    -------
+    dict of str to float
+        * `robots`, `pairs` that met, `met`: share of all pairs that met, `meetings`;
+        * `time`: robot-seconds in conflict, `inter`: share of that time between swarms;
+        * `degree`: mean number of robots that a robot met, `strength`: mean time of a robot in meetings (s);
+        * `assortativity` of pairs by swarm-ID, `assortativity_time`: pairs weighted by time; `chance`: both if
+          every robot met every other one equally, which is below 0 because no robot meets itself.
+    """
+    swarms = sorted(set(nx.get_node_attributes(network, "swarm").values()))
+    sizes = np.array([sum(s == swarm for _, s in network.nodes(data="swarm")) for swarm in swarms], float)
+    time = mixing_matrix(network, "time")
+    robots = network.number_of_nodes()
+    pairs = network.number_of_edges()
+    return {
+        "robots": robots,
+        "pairs": pairs,
+        "met": pairs / (robots * (robots - 1) / 2),
+        "meetings": sum(meetings for *_, meetings in network.edges(data="meetings")),
+        "time": float(time.sum() / 2),
+        "inter": float(1 - np.trace(time) / time.sum()),
+        "degree": 2 * pairs / robots,
+        "strength": float(time.sum() / robots),
+        "assortativity": _assortativity(mixing_matrix(network, None)),
+        "assortativity_time": _assortativity(time),
+        "chance": _assortativity(np.outer(sizes, sizes) - np.diag(sizes)),
+    }
+
+
+def mixing_matrix(network: nx.Graph, weight: str | None) -> np.ndarray:
+    """Return the meetings between each two swarms.
+
+    Parameters
+    ----------
+    network : networkx.Graph
+        As `meeting_network` returns it.
+    weight : {'time', 'meetings'}, optional
+        Attribute of a pair to sum; None counts pairs.
+
+    Returns
+    -------
+    ndarray of float64, shape (K, K)
+        Symmetric; row and column k are the k-th swarm. Each pair counts once from each side, so a row sums to
+        the meetings of its robots with all swarms.
+    """
+    swarm = nx.get_node_attributes(network, "swarm")
+    index = {name: k for k, name in enumerate(sorted(set(swarm.values())))}
+    matrix = np.zeros((len(index), len(index)))
+    for first, second, value in network.edges(data=weight) if weight else network.edges(data="kind"):
+        amount = value if weight else 1
+        matrix[index[swarm[first]], index[swarm[second]]] += amount
+        matrix[index[swarm[second]], index[swarm[first]]] += amount
+    return matrix
+
+
+def _assortativity(mixing: np.ndarray) -> float:
+    """Return Newman's assortativity, r = (Σ e_kk − Σ a_k²) / (1 − Σ a_k²), NaN for a single swarm."""
+    shares = mixing / mixing.sum()
+    by_chance = float((shares.sum(axis=1) ** 2).sum())
+    return float((np.trace(shares) - by_chance) / (1 - by_chance)) if by_chance < 1 else float("nan")
+
+
+def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:
+    """Return jams over time: groups of robots linked by conflicts at the same moment.
+
+    Parameters
+    ----------
+    conflicts : pandas.DataFrame
+        Conflicts of one game.
+    every : float
+        Time between two moments (s).
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row for each moment from the first start to the last end of a conflict: `time` (float64, s),
+        `jams` (int64): connected components of at least `SMALLEST_JAM` robots, `jammed` (int64): robots in
+        these, `largest` (int64): robots in the largest component, 0 without any conflict.
+
+    Raises
+    ------
+    InputError
+        `every` is not above 0, or there is no conflict.
+    """
+    if every <= 0:
+        raise InputError("every", every, "must be above 0")
+    if conflicts.empty:
+        raise InputError("conflicts", "no rows", "must hold at least one conflict")
+    start = conflicts["start"].to_numpy()
+    # A conflict covers the moments with start ≤ moment < end. Moments are multiples of `every`, starts of the
+    # control period: subtract 1e-9 to absorb rounding errors of the quotients.
+    first = np.ceil(start / every - 1e-9).astype(int)
+    last = np.ceil((start + conflicts["t_a"].to_numpy()) / every - 1e-9).astype(int)
+    origin, moments = first.min(), last.max() - first.min()
+    lengths = last - first
+    edge = np.repeat(np.arange(len(conflicts)), lengths)
+    moment = (
+        np.arange(lengths.sum()) - np.repeat(np.cumsum(lengths) - lengths, lengths) + first[edge] - origin
+    )
+    robots = int(conflicts[["robot", "opponent"]].to_numpy().max()) + 1
+    # A node is a (moment, robot). No edge joins two moments, so one call finds the components of all moments.
+    a = moment * robots + conflicts["robot"].to_numpy()[edge]
+    b = moment * robots + conflicts["opponent"].to_numpy()[edge]
+    nodes = max(moments, 1) * robots
+    graph = coo_array((np.ones(len(a), bool), (a, b)), shape=(nodes, nodes))
+    _, component = connected_components(graph, directed=False)
+    size = np.bincount(component)
+    at = np.zeros(len(size), int)
+    at[component] = np.arange(nodes) // robots
+    groups = pd.DataFrame({"at": at, "size": size})[size > 1]
+    jammed = groups[groups["size"] >= SMALLEST_JAM].groupby("at")["size"].agg(["size", "sum"])
+    index = pd.RangeIndex(moments)
+    return pd.DataFrame(
+        {
+            "time": (origin + np.arange(moments)) * every,
+            "jams": jammed["size"].reindex(index, fill_value=0),
+            "jammed": jammed["sum"].reindex(index, fill_value=0),
+            "largest": groups.groupby("at")["size"].max().reindex(index, fill_value=0),
+        }
+    )

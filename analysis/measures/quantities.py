@@ -1,0 +1,92 @@
+"""Quantities of a scenario and its curves, from the rows of `runs.parquet`."""
+
+from dataclasses import dataclass
+from typing import Final
+
+import pandas as pd
+
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.user_code.syntax import split_outside
+
+TIME_SHARES: Final = ("total", "inter-swarm", "intra-swarm")
+"""Kinds of conflict with a share of a swarm's time."""
+
+# Scenarios that the source shows by other quantities than pucks. SUD is that of S2, whose conditions differ.
+_OF_SUD: Final = {
+    *("fig-6.10a", "fig-6.10b", "fig-6.12", "fig-6.14"),
+    *("fig-7.4", "fig-7.6", "fig-7.8", "fig-7.10", "fig-7.11", "fig-7.19"),
+}
+_OF_TIME: Final = {"fig-6.3"}
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One curve of a scenario.
+
+    Attributes
+    ----------
+    label : str
+        Name in legends and tables.
+    rows : pandas.DataFrame
+        Rows of `runs.parquet`.
+    condition : int or None
+        Index of the condition; None if the scenario has only one.
+    swarm : int or None
+        Number of the swarm; None if only conditions differ.
+    """
+
+    label: str
+    rows: pd.DataFrame
+    condition: int | None
+    swarm: int | None
+
+
+def of_scenario(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
+    """Return the rows of a scenario.
+
+    Raises
+    ------
+    InputError
+        `runs` has none.
+    """
+    rows = runs[runs["scenario"] == scenario]
+    if rows.empty:
+        raise InputError("scenario", scenario, f"must be one of {', '.join(sorted(set(runs['scenario'])))}")
+    return rows
+
+
+def split_curves(rows: pd.DataFrame) -> list[Curve]:
+    """Split the rows of a scenario into one curve for each condition and swarm."""
+    conditions = list(dict.fromkeys(rows["condition"]))
+    several_swarms = rows["swarm"].nunique() > 1
+    curves = []
+    for index, condition in enumerate(conditions):
+        for swarm, of_curve in rows[rows["condition"] == condition].groupby("swarm"):
+            label = f"S{swarm}: {', '.join(dict.fromkeys(map(short_policy, of_curve['policy'])))}"
+            if len(conditions) == 1:
+                curves.append(Curve(label, of_curve, None, int(swarm)))
+            elif several_swarms:
+                curves.append(Curve(f"{condition or '–'}, {label}", of_curve, index, int(swarm)))
+            else:
+                curves.append(Curve(condition or label, of_curve, index, None))
+    return curves
+
+
+def short_policy(policy: str) -> str:
+    """Return a policy without arguments and path, which are too long for a legend."""
+    return "+".join(part.partition("(")[0].rpartition(":")[2] for part in split_outside(policy, "+"))
+
+
+def quantities(scenario: str) -> tuple[str, ...]:
+    """Return the quantities in the figure of a scenario: `TIME_SHARES`, ``sud`` (of S2) or ``pucks``."""
+    if scenario in _OF_SUD:
+        return ("sud",)
+    return TIME_SHARES if scenario in _OF_TIME else ("pucks",)
+
+
+def with_time_shares(rows: pd.DataFrame) -> pd.DataFrame:
+    """Add the shares of time in conflict, T(a) / (T(a) + T(p)): a column for each of `TIME_SHARES`."""
+    in_conflict = rows["t_a_intra"] + rows["t_a_inter"]
+    times = (in_conflict, rows["t_a_inter"], rows["t_a_intra"])
+    total = in_conflict + rows["t_p"]
+    return rows.assign(**{kind: time / total for kind, time in zip(TIME_SHARES, times, strict=True)})
