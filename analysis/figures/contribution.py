@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from kswarms.analysis.figures.files import save
-from kswarms.analysis.figures.style import LineStyle, brief, heading, legend_below, sheet, swarm_style
+from kswarms.analysis.figures.style import LineStyle, heading, legend_below, sheet, swarm_style
 from kswarms.analysis.measures.contribution import (
     MEASURES,
     mean_contributions,
@@ -15,6 +15,7 @@ from kswarms.analysis.measures.contribution import (
     of_question,
     rank_correlations,
 )
+from kswarms.analysis.measures.quantities import short_policy
 from kswarms.analysis.results.records import read_contributions
 from kswarms.analysis.statistics.intervals import fewest_seeds
 from kswarms.analysis.tables.contribution import estimate_text
@@ -64,7 +65,7 @@ def _draw_swarm(axes: Axes, games: pd.DataFrame, means: pd.DataFrame, measure: s
         means[measure],
         xerr=means["reward_high"] - means["reward"],
         yerr=means[f"{measure}_high"] - means[measure],
-        label=f"S{means['swarm'].iloc[0]}: {', '.join(dict.fromkeys(map(brief, games['policy'])))}",
+        label=f"S{means['swarm'].iloc[0]}: {', '.join(dict.fromkeys(map(short_policy, games['policy'])))}",
         color=style.colour,
         linestyle="none",
         marker=style.marker,

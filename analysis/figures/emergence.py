@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from kswarms.analysis.figures.style import CONDITION_COLOURS, CONDITION_MARKERS, legend_below, sheet
 from kswarms.analysis.measures.emergence import BANDIT, arm_values, choices, preferences
 
+
 def choices_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
     """Draw the share of each action over the time of learning; thick lines are swarms, thin lines robots.
 

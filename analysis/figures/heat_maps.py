@@ -14,6 +14,7 @@ from kswarms.analysis.figures.style import sheet
 from kswarms.analysis.film.painter import Places
 from kswarms.analysis.measures.conflict_density import CELL, conflict_density
 
+
 def heat_maps(conflicts: pd.DataFrame, title: str = "", places: Places | None = None) -> Figure:
     """Draw where conflicts happen: all of them, and those with each action.
 

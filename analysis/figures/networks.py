@@ -17,6 +17,7 @@ from kswarms.analysis.measures.networks import SMALLEST_JAM
 _SMOOTHED = 15
 """Moments that a thick line of jams is the mean of."""
 
+
 def network_figure(network: nx.Graph, title: str = "") -> Figure:
     """Draw who met whom: robots around a circle, swarm by swarm, and the time of each pair as a matrix.
 

@@ -11,12 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.theory.times import share_of_time
 from kswarms.analysis.figures.files import save
 from kswarms.analysis.figures.style import (
     LineStyle,
     condition_style,
-    curves_of,
     draw_curves,
     draw_line,
     heading,
@@ -24,6 +22,13 @@ from kswarms.analysis.figures.style import (
     scale_from_zero,
     seeds_legend,
     sheet,
+)
+from kswarms.analysis.measures.quantities import (
+    TIME_SHARES,
+    of_scenario,
+    quantities,
+    split_curves,
+    with_time_shares,
 )
 from kswarms.analysis.results.runs import read_runs
 from kswarms.analysis.tables.learned import named_columns
@@ -55,7 +60,7 @@ def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "", detail: boo
     rows = of_scenario(runs, scenario)
     with sheet(heading(scenario, title)) as figure:
         axes = figure.subplots()
-        draw_curves(axes, curves_of(rows), "pucks", detail)
+        draw_curves(axes, split_curves(rows), "pucks", detail)
         axes.set_ylabel("pucks deposited by the swarm")
         scale_from_zero(axes, rows["pucks"])
         legend_below(figure, seeds_legend(rows, detail))
@@ -84,25 +89,13 @@ def time_shares(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool
     with sheet(heading(scenario, title), width=11.0) as figure:
         panels: Sequence[Axes] = figure.subplots(1, len(TIME_SHARES), sharey=True)
         for axes, kind in zip(panels, TIME_SHARES, strict=True):
-            draw_curves(axes, curves_of(rows), kind, detail)
+            draw_curves(axes, split_curves(rows), kind, detail)
             axes.set_title(kind)
             axes.set_ylabel("share of time, T(a) / (T(a) + T(p))")
             axes.label_outer()
         scale_from_zero(panels[0], rows["total"])
         legend_below(figure, seeds_legend(rows, detail))
     return figure
-
-
-TIME_SHARES = ("total", "inter-swarm", "intra-swarm")
-"""Kinds of conflict that a swarm's share of time is given for."""
-
-
-def with_time_shares(rows: pd.DataFrame) -> pd.DataFrame:
-    """Add the shares of time in conflict to rows of `runs.parquet`: a column for each of `TIME_SHARES`."""
-    in_conflict = rows["t_a_intra"] + rows["t_a_inter"]
-    times = (in_conflict, rows["t_a_inter"], rows["t_a_intra"])
-    shares = (share_of_time(time, in_conflict, rows["t_p"]) for time in times)
-    return rows.assign(**dict(zip(TIME_SHARES, shares, strict=True)))
 
 
 def sud_over_n(
@@ -134,7 +127,7 @@ def sud_over_n(
     with sheet(heading(scenario, title)) as figure:
         axes = figure.subplots()
         axes.axhline(0, color="0.4", linewidth=1)
-        draw_curves(axes, curves_of(rows), "sud", detail)
+        draw_curves(axes, split_curves(rows), "sud", detail)
         axes.set_ylabel(f"SUD of S{swarm} (pucks)")
         legend_below(figure, seeds_legend(rows, detail))
     return figure
@@ -179,21 +172,6 @@ def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[st
         axes.set_ylabel(f"robots that learned {what} (%)")
         legend_below(figure, "learned, measured with its 95 % interval")
     return figure
-
-
-# What a scenario shows, where it is not pucks. The swarm by which conditions differ, S2, is that of the SUD.
-_OF_SUD = (
-    *("fig-6.10a", "fig-6.10b", "fig-6.12", "fig-6.14"),
-    *("fig-7.4", "fig-7.6", "fig-7.8", "fig-7.10", "fig-7.11", "fig-7.19"),
-)
-_OF_TIME = ("fig-6.3",)
-
-
-def quantities(scenario: str) -> tuple[str, ...]:
-    """Return what the figure of a scenario shows: `TIME_SHARES`, ``sud`` (of S2) or ``pucks``."""
-    if scenario in _OF_SUD:
-        return ("sud",)
-    return TIME_SHARES if scenario in _OF_TIME else ("pucks",)
 
 
 def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool = True) -> Figure:
@@ -251,17 +229,3 @@ def write_figures(
             paths.append(out / f"{scenario}.png")
             save(figure_of(runs, scenario, (titles or {}).get(scenario, "")), paths[-1])
     return paths
-
-
-def of_scenario(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
-    """Return the rows of a scenario.
-
-    Raises
-    ------
-    InputError
-        `runs` has none.
-    """
-    rows = runs[runs["scenario"] == scenario]
-    if rows.empty:
-        raise InputError("scenario", scenario, f"must be one of {', '.join(sorted(set(runs['scenario'])))}")
-    return rows

@@ -18,8 +18,8 @@ import seaborn as sns
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from kswarms.agents.user_code.syntax import split_outside
 from kswarms.analysis.colours import swarm_colour
+from kswarms.analysis.measures.quantities import Curve
 from kswarms.analysis.statistics.intervals import fewest_seeds
 from kswarms.analysis.statistics.means import mean_by_n
 from kswarms.analysis.text_tables import span
@@ -62,39 +62,12 @@ def condition_style(index: int, swarm: int | None = None) -> LineStyle:
     return LineStyle(colour, "-", CONDITION_MARKERS[index % len(CONDITION_MARKERS)])
 
 
-@dataclass(frozen=True)
-class Curve:
-    """The rows of one curve, its name in the legend and its line style."""
-
-    label: str
-    rows: pd.DataFrame
-    style: LineStyle
-
-
-def curves_of(rows: pd.DataFrame) -> list[Curve]:
-    """Split the rows of a scenario into curves.
-
-    One condition gives a curve for each swarm in the source's style. Several conditions give a curve for each
-    condition and swarm: the condition has the colour; with several swarms, the swarm has the line and marker.
-    """
-    conditions = list(dict.fromkeys(rows["condition"]))
-    several_swarms = rows["swarm"].nunique() > 1
-    curves = []
-    for index, condition in enumerate(conditions):
-        of_condition = rows[rows["condition"] == condition]
-        for swarm, of_curve in of_condition.groupby("swarm"):
-            label = f"S{swarm}: {', '.join(dict.fromkeys(map(brief, of_curve['policy'])))}"
-            style = swarm_style(swarm)
-            if len(conditions) > 1:
-                label = f"{condition or '–'}, {label}" if several_swarms else condition or label
-                style = condition_style(index, swarm if several_swarms else None)
-            curves.append(Curve(label, of_curve, style))
-    return curves
-
-
-def brief(policy: str) -> str:
-    """Return a policy without its arguments and the path of its file, which are too long for a legend."""
-    return "+".join(part.partition("(")[0].rpartition(":")[2] for part in split_outside(policy, "+"))
+def curve_style(curve: Curve) -> LineStyle:
+    """Return the line style of a curve: the source's for a swarm, unless there are several conditions."""
+    if curve.condition is not None:
+        return condition_style(curve.condition, curve.swarm)
+    assert curve.swarm is not None  # the only condition has a curve for each swarm
+    return swarm_style(curve.swarm)
 
 
 def draw_curves(axes: Axes, curves: Sequence[Curve], quantity: str, detail: bool = True) -> None:
@@ -102,7 +75,7 @@ def draw_curves(axes: Axes, curves: Sequence[Curve], quantity: str, detail: bool
     densities = sorted({n for curve in curves for n in curve.rows["n"]})
     gap = min([_MAX_GAP, *(right - left for left, right in pairwise(densities))])
     for index, curve in enumerate(curves):
-        style, rows = curve.style, curve.rows
+        style, rows = curve_style(curve), curve.rows
         # Curves are shifted, so that the seeds of one do not hide those of another.
         shift = gap * 0.5 * ((index + 0.5) / len(curves) - 0.5)
         seeds = rows["seed"].nunique()

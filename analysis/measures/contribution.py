@@ -15,7 +15,7 @@ from scipy import stats
 
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.theory.swarms import swarm_utility_difference
-from kswarms.analysis.measures.utilities import COLUMNS, robot_utilities, swarm_utilities
+from kswarms.analysis.measures.utilities import COLUMNS, robot_utilities, utilities_by_swarm
 from kswarms.analysis.statistics.intervals import Interval, bootstrap_interval
 from kswarms.analysis.statistics.means import with_intervals
 
@@ -45,7 +45,7 @@ def time_sud(conflicts: Mapping[str, Sequence[Any]], swarms: int) -> list[float]
     table = table[table["phase"] == "game"]
     utilities = [0.0] * swarms  # of a swarm that met nobody, too
     if not table.empty:
-        of_swarms = swarm_utilities(robot_utilities(table))
+        of_swarms = utilities_by_swarm(robot_utilities(table))
         for swarm, utility in zip(of_swarms["swarm"], of_swarms["utility"], strict=True):
             utilities[swarm - 1] = utility
     return [swarm_utility_difference(utilities, swarm) for swarm in range(swarms)]

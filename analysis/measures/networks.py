@@ -75,8 +75,8 @@ def describe_network(network: nx.Graph) -> dict[str, float]:
         * `robots`, `pairs` that met, `met`: share of all pairs that met, `meetings`;
         * `time`: robot-seconds in conflict, `inter`: share of that time between swarms;
         * `degree`: mean number of robots that a robot met, `strength`: mean time of a robot in meetings (s);
-        * `assortativity` of pairs by swarm-ID, `assortativity_time`: pairs weighted by time; `chance`: both if
-          every robot met every other one equally, which is below 0 because no robot meets itself.
+        * `assortativity` of pairs by swarm-ID, `assortativity_time`: pairs weighted by time; `chance`: both
+          if every robot met every other one equally, which is below 0 because no robot meets itself.
     """
     swarms = sorted(set(nx.get_node_attributes(network, "swarm").values()))
     sizes = np.array([sum(s == swarm for _, s in network.nodes(data="swarm")) for swarm in swarms], float)

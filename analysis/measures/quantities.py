@@ -6,6 +6,7 @@ from typing import Final
 import pandas as pd
 
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.theory.times import share_of_time
 from kswarms.agents.user_code.syntax import split_outside
 
 TIME_SHARES: Final = ("total", "inter-swarm", "intra-swarm")
@@ -88,5 +89,5 @@ def with_time_shares(rows: pd.DataFrame) -> pd.DataFrame:
     """Add the shares of time in conflict, T(a) / (T(a) + T(p)): a column for each of `TIME_SHARES`."""
     in_conflict = rows["t_a_intra"] + rows["t_a_inter"]
     times = (in_conflict, rows["t_a_inter"], rows["t_a_intra"])
-    total = in_conflict + rows["t_p"]
-    return rows.assign(**{kind: time / total for kind, time in zip(TIME_SHARES, times, strict=True)})
+    shares = (share_of_time(time, in_conflict, rows["t_p"]) for time in times)
+    return rows.assign(**dict(zip(TIME_SHARES, shares, strict=True)))

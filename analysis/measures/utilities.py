@@ -1,7 +1,7 @@
 """Utilities measured on recorded games: chapter 3 with the time-utilities of chapter 4 (section 1.3).
 
     robots = robot_utilities(conflicts, alpha=1.0, beta=1.0)   # u_i^m, U_i, W_i of every robot
-    swarms = swarm_utilities(robots)                           # U_Sk, SUD of every swarm
+    swarms = utilities_by_swarm(robots)                           # U_Sk, SUD of every swarm
 
 `conflicts` has the columns of ``conflicts.parquet``: `kswarms.analysis.results.records.read_conflicts` reads
 it, and ``pandas.DataFrame(model.tables()["conflicts"])`` of a game just played will do; the column ``run``
@@ -87,7 +87,7 @@ def robot_utilities(
     return together.fillna(0.0).reset_index(drop=True)
 
 
-def swarm_utilities(robots: pd.DataFrame) -> pd.DataFrame:
+def utilities_by_swarm(robots: pd.DataFrame) -> pd.DataFrame:
     """Return U_Sk and SUD_k of every swarm (Eqs. 3.5, 3.7).
 
     Parameters

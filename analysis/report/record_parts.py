@@ -10,8 +10,9 @@ import pandas as pd
 
 from kswarms.analysis.figures import emergence, heat_maps, networks
 from kswarms.analysis.film.painter import Places
+from kswarms.analysis.measures.networks import describe_network, jams, meeting_network
 from kswarms.analysis.report.page import Part
-from kswarms.analysis.results.records import read_conflicts, read_robot_records, recorded_runs
+from kswarms.analysis.results.records import read_conflicts, read_robots, recorded_runs
 from kswarms.analysis.text_tables import PrintedTable, number
 
 MAX_GAMES: Final = 4
@@ -119,14 +120,14 @@ def _network_part(directory: Path, condition: Recorded, game: pd.DataFrame, name
     part = Part(f"network-{condition.id}", condition.name)
     part.add_figure(
         part.id,
-        networks.network_figure(networks.meeting_network(game), f"{name}: meetings"),
+        networks.network_figure(meeting_network(game), f"{name}: meetings"),
         f"Network and matrix of the time that each two robots spent in conflict, {name}.",
         f"Meetings in the measured game, {name}. Left: the wider and darker a line, the longer the conflicts "
         "of the two robots. Right: the same times as a matrix; grey pairs never met.",
     )
     part.add_figure(
         f"jams-{condition.id}",
-        networks.jams_figure(networks.jams(game), f"{name}: jams"),
+        networks.jams_figure(jams(game), f"{name}: jams"),
         f"Robots in jams and in the largest cluster over the time of the measured game, {name}.",
         f"Jams, {name}: robots linked by simultaneous conflicts, at every second.",
     )
@@ -135,9 +136,9 @@ def _network_part(directory: Path, condition: Recorded, game: pd.DataFrame, name
         seeds = games.head(MAX_GAMES).set_index("run")["seed"]
         conflicts = read_conflicts(directory, list(seeds.index))
         for run, of_run in conflicts[conflicts["phase"] == "game"].groupby("run"):
-            network = networks.describe(networks.meeting_network(of_run))
-            jams = networks.jams(of_run)[["jams", "jammed", "largest"]].mean()
-            rows.append({"n": n, "seed": seeds[run], **network, **jams})
+            network = describe_network(meeting_network(of_run))
+            of_jams = jams(of_run)[["jams", "jammed", "largest"]].mean()
+            rows.append({"n": n, "seed": seeds[run], **network, **of_jams})
     frame = pd.DataFrame(rows).sort_values(["n", "seed"])
     cells = [
         [number(row[name], form) for name, (_, form) in _NETWORK_COLUMNS.items()]
@@ -188,7 +189,7 @@ def _emergence_part(condition: Recorded, conflicts: pd.DataFrame, name: str) -> 
 
 def robots_parts(directory: Path, condition: Recorded) -> Iterator[tuple[str, Part]]:
     """Yield the final Q of each robot of a condition and its chapter ``emergence``, if any robot learned."""
-    robots = read_robot_records(directory, condition.densest["run"])
+    robots = read_robots(directory, condition.densest["run"])
     if not robots["arms"].map(len).any():
         return
     name = condition.densest_name

@@ -10,6 +10,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.figures import over_n
 from kswarms.analysis.figures.style import heading
 from kswarms.analysis.findings import Verdict
+from kswarms.analysis.measures.quantities import TIME_SHARES, quantities
 from kswarms.analysis.report.page import Part
 from kswarms.analysis.results.runs import Results
 from kswarms.analysis.tables import fidelity, scores
@@ -22,7 +23,7 @@ ARGOS: Final = "argos-"
 _SHOWN: Final = {
     ("pucks",): "pucks deposited by each swarm",
     ("sud",): "Swarm Utility Difference of S2",
-    over_n.TIME_SHARES: "shares of time in conflict",
+    TIME_SHARES: "shares of time in conflict",
 }
 
 
@@ -43,7 +44,7 @@ def scenario_part(results: Results, scenario: str, title: str, missing: str, tab
     part = Part(scenario, heading(scenario, title))
     if missing:
         part.text.append(f"Missing: {missing}.")
-    shown = _SHOWN[over_n.quantities(scenario)]
+    shown = _SHOWN[quantities(scenario)]
     frame = scores.scores(results.runs, scenario)
     curves = ", ".join(dict.fromkeys(frame["curve"]))
     alt = f"Line chart of the {shown} over the number of robots in all, for {curves}"

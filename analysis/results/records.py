@@ -43,7 +43,7 @@ def read_conflicts(directory: Path, runs: Collection[str] | None = None, seen: b
     return read_table(directory, "conflicts", columns, runs)
 
 
-def read_robot_records(directory: Path, runs: Collection[str]) -> pd.DataFrame:
+def read_robots(directory: Path, runs: Collection[str]) -> pd.DataFrame:
     """Read `robots.parquet`: one row for each robot at the end of its game.
 
     Parameters

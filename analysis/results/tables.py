@@ -57,7 +57,7 @@ def read_table(
         raise InputError("results", str(path), f"must have the missing columns {', '.join(missing)}")
     filters = None if runs is None else [("run", "in", set(runs))]
     with _readable(path):
-        rows: pd.DataFrame = pq.read_table(path, columns=columns, filters=filters).to_pandas()
+        rows: pd.DataFrame = pq.read_table(path, columns=columns and list(columns), filters=filters).to_pandas()
     return check_columns(rows, table, required)
 
 

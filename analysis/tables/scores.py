@@ -2,8 +2,13 @@
 
 import pandas as pd
 
-from kswarms.analysis.figures.over_n import TIME_SHARES, of_scenario, quantities, with_time_shares
-from kswarms.analysis.figures.style import curves_of
+from kswarms.analysis.measures.quantities import (
+    TIME_SHARES,
+    of_scenario,
+    quantities,
+    split_curves,
+    with_time_shares,
+)
 from kswarms.analysis.statistics.means import describe_seeds, mean_by_n
 from kswarms.analysis.text_tables import PrintedTable, with_interval
 
@@ -41,7 +46,7 @@ def scores(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
     parts = [
         mean_by_n(curve.rows, quantity, by=()).assign(quantity=quantity, curve=curve.label)
         for quantity in shown
-        for curve in curves_of(rows)
+        for curve in split_curves(rows)
     ]
     return pd.concat(parts, ignore_index=True)[["quantity", "curve", "n", "seeds", "mean", "low", "high"]]
 

@@ -18,14 +18,8 @@ import seaborn as sns
 
 from kswarms import ForagingModel
 from kswarms.analysis.figures.heat_maps import heat_maps
-from kswarms.analysis.figures.networks import (
-    describe,
-    jams,
-    jams_figure,
-    meeting_network,
-    mixing_matrix,
-    network_figure,
-)
+from kswarms.analysis.figures.networks import jams_figure, network_figure
+from kswarms.analysis.measures.networks import describe_network, jams, meeting_network, mixing_matrix
 
 model = ForagingModel(n=36, policies="avoid,attack", duration=600, seed=1, record="conflicts")
 model.play()
@@ -43,7 +37,7 @@ conflicts[["robot", "swarm", "opponent", "opponent_swarm", "start", "x", "y", "a
 
 # %%
 network = meeting_network(conflicts)
-pd.Series(describe(network)).round(3)
+pd.Series(describe_network(network)).round(3)
 
 # %% [markdown]
 # `assortativity` is Newman's, by swarm-ID. Above `chance`, robots meet their own swarm more often than
@@ -92,7 +86,7 @@ for policies in ("avoid,avoid", "avoid,attack", "attack,attack"):
             {
                 "policies": policies,
                 "N": n,
-                "inter": describe(meeting_network(table))["inter"],
+                "inter": describe_network(meeting_network(table))["inter"],
                 "jammed": jams(table)["jammed"].mean() / n,
             }
         )

@@ -24,7 +24,7 @@ from kswarms.agents.theory.games import NormalForm, is_pairwise_zero_sum, polyma
 from kswarms.agents.theory.times import Interaction, pair_utility, time_utility
 from kswarms.analysis.figures.game_forms import draw_polymatrix
 from kswarms.analysis.measures.contribution import assumption, mean_contributions, of_question, time_sud
-from kswarms.analysis.measures.utilities import robot_utilities, swarm_utilities
+from kswarms.analysis.measures.utilities import robot_utilities, utilities_by_swarm
 from kswarms.scenarios.contribution.games import contributions, robots_of
 
 # %% [markdown]
@@ -72,7 +72,7 @@ robots.head(3)
 # 3.3), and `wlu` its Wonderful Life Utility from times alone (Eq. 4.14). The sums by swarm:
 
 # %%
-swarm_utilities(robots)
+utilities_by_swarm(robots)
 
 # %% [markdown]
 # The two Swarm Utility Differences cancel, as for any two swarms (Corollary 6).

@@ -100,3 +100,29 @@ def robots(runs: tuple[str, ...] = ("a",)) -> pd.DataFrame:
         for run in runs
         for robot, swarm, arms in told
     )
+
+
+def learning_conflicts() -> pd.DataFrame:
+    """Return conflicts in which robot 2 fights S1 from 10 s on, with Q up to 1.9, and robot 3 never."""
+    rows = [conflict(0, 2, 0.0, phase="learning", action="fight")]
+    for second in range(20):
+        action = "fight" if second >= 10 else "flight"
+        rows.append(
+            conflict(2, 0, second, phase="learning", action=action, q=second / 10 if second >= 10 else 0.1)
+        )
+        rows.append(conflict(3, 1, second, phase="learning", q=0.5))
+    rows.append(
+        conflict(3, 2, 5.0, phase="learning", action="fight")
+    )  # S2 has no bandit for it
+    rows.append(conflict(2, 0, 25.0))  # the measured game
+    return pd.DataFrame(rows)
+
+
+PLACED = pd.DataFrame(
+    [
+        conflict(0, 2, 0, x=-0.99, y=-0.99),
+        conflict(0, 2, 1, x=-0.99, y=-0.99, action="fight"),
+        conflict(0, 2, 2, x=0.99, y=-0.99, run="b"),
+        conflict(0, 2, 2, x=0.99, y=0.42, run="b"),
+    ]
+)

@@ -12,7 +12,7 @@ from kswarms.agents.theory.swarms import (
     sum_of_differences,
     swarm_utility_difference,
 )
-from kswarms.analysis.measures.utilities import robot_utilities, swarm_utilities
+from kswarms.analysis.measures.utilities import robot_utilities, utilities_by_swarm
 from kswarms.analysis.results.records import read_conflicts
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.game_model import GameModel
@@ -77,7 +77,7 @@ def test_what_swarms_have_from_each_other_cancels(swarms: tuple[Swarm, ...]) -> 
     assert is_zero_sum_between(u, swarm_of)
     assert np.abs(u).max() > 1
     assert not is_zero_sum_between(np.abs(u), swarm_of)
-    table = swarm_utilities(robots)
+    table = utilities_by_swarm(robots)
     totals = table["utility"].tolist()
     assert sum(totals) == pytest.approx(u[np.arange(len(u)), swarm_of].sum())
     assert table["sud"].tolist() == pytest.approx(

@@ -12,6 +12,7 @@ from kswarms.analysis.figures import emergence, networks
 from kswarms.analysis.figures import heat_maps as maps
 from kswarms.analysis.figures.files import encode, encode_all, save
 from kswarms.analysis.figures.over_time import pucks_over_time, sud_over_time, time_share_over_time
+from kswarms.analysis.measures.networks import jams, meeting_network
 from kswarms.model.foraging import ForagingModel
 
 
@@ -51,9 +52,9 @@ def test_samples_without_the_columns() -> None:
 
 def test_the_conflicts_of_a_datacollector_are_drawn_like_those_of_a_file(model: ForagingModel) -> None:
     conflicts = model.datacollector.get_table_dataframe("conflicts")
-    network = networks.meeting_network(conflicts)
+    network = meeting_network(conflicts)
     assert set(network) <= set(range(8))
-    assert networks.jams(conflicts)["largest"].max() <= 8
+    assert jams(conflicts)["largest"].max() <= 8
     figures = (
         networks.network_figure(network),
         emergence.choices_figure(conflicts),

@@ -21,7 +21,7 @@ from kswarms.analysis.measures.contribution import (
     spearman,
     time_sud,
 )
-from kswarms.analysis.measures.utilities import robot_utilities, swarm_utilities
+from kswarms.analysis.measures.utilities import robot_utilities, utilities_by_swarm
 from kswarms.analysis.results.records import read_contributions
 from kswarms.analysis.statistics.intervals import bootstrap_interval
 from kswarms.analysis.tables.contribution import contribution_tables
@@ -226,7 +226,7 @@ def test_sud_in_time_utility_is_that_of_the_measured_game() -> None:
         "active": [1, 1, 1],
     }
     found = time_sud(conflicts, 2)
-    expected = swarm_utilities(robot_utilities(pd.DataFrame(conflicts)))
+    expected = utilities_by_swarm(robot_utilities(pd.DataFrame(conflicts)))
     assert found == pytest.approx(expected["sud"].tolist())
     assert found[0] == -found[1] != 0
     assert time_sud({name: values[:1] for name, values in conflicts.items()}, 2) == [0.0, 0.0]

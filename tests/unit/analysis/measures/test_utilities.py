@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.measures.utilities import Weights, robot_utilities, swarm_utilities
+from kswarms.analysis.measures.utilities import Weights, robot_utilities, utilities_by_swarm
 
 # Robots 0 and 1 are of S1, robot 2 of S2, for ten seconds. Who noticed whom:
 #   0 at 0 s: two seconds in A; it meets 2 and sees 1 as well.
@@ -43,7 +43,7 @@ def test_utilities_worked_by_hand() -> None:
 
 
 def test_swarms_worked_by_hand() -> None:
-    swarms = swarm_utilities(robot_utilities(table()))
+    swarms = utilities_by_swarm(robot_utilities(table()))
     assert swarms.to_dict("list") == {"swarm": [1, 2], "utility": [10.0, -6.0], "sud": [16.0, -16.0]}
 
 
@@ -84,7 +84,7 @@ def test_games_are_told_apart_by_their_run_and_measured_one_by_one() -> None:
     assert robots[["u_1", "u_2", "utility", "wlu"]].to_numpy().tolist()[3:] == [
         list(row) for row in measured()
     ]
-    swarms = swarm_utilities(robots)
+    swarms = utilities_by_swarm(robots)
     assert swarms["run"].tolist() == ["b", "b", "b", "a", "a"]
     assert swarms["sud"].tolist() == [2 + 6 - 4, -6 - 2 - 4, 4 - 2 + 6, 16, -16]
 

@@ -1,0 +1,35 @@
+"""Figures of choices, values and preferences."""
+
+import numpy as np
+
+from kswarms.analysis.figures.emergence import choices_figure, preferences_figure, values_figure
+from tests.helpers.result_rows import learning_conflicts, robots
+
+
+def test_choices_and_q_are_drawn_with_a_panel_for_each_bandit() -> None:
+    (axes,) = choices_figure(learning_conflicts(), "t").axes
+    assert axes.get_title() == "S2 against S1"
+    assert [text.get_text() for text in axes.figure.legends[0].get_texts()] == [
+        "fight"
+    ]  # the other is the rest
+    (axes,) = values_figure(learning_conflicts(), "t").axes
+    assert [text.get_text() for text in axes.figure.legends[0].get_texts()] == ["fight", "flight"]
+    assert axes.get_ylabel() == "Q (reward per second)"
+    within = learning_conflicts().assign(q=0.3)
+    titles = [axes.get_title() for axes in values_figure(within).axes]
+    assert titles == ["S1 against S2", "S2 against S1", "S2 within itself"]
+
+
+def test_three_actions_are_all_drawn() -> None:
+    rows = learning_conflicts()
+    rows.loc[2, "action"] = "wait"
+    figure = choices_figure(rows)
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["fight", "flight", "wait"]
+
+
+def test_preferences_are_drawn_robot_by_robot() -> None:
+    (axes,) = preferences_figure(robots(("a", "b")), "t").axes
+    assert axes.get_title() == "S2 against S1; best: fight 50%, flight 50%"
+    fight, flight = (np.asarray(drawn.get_offsets()) for drawn in axes.collections)
+    assert fight.tolist() == [[0, 0.2], [1, 0.2]]
+    assert flight.tolist() == [[0, 0.1], [2, 0.3], [1, 0.1], [3, 0.3]]

@@ -1,0 +1,31 @@
+"""Heat maps of conflicts."""
+
+import pytest
+
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.figures.files import encode
+from kswarms.analysis.figures.heat_maps import heat_maps
+from kswarms.model.description.arena import build_arena
+from tests.helpers.result_rows import PLACED
+
+
+def test_heat_maps_of_all_and_of_each_action_share_a_scale() -> None:
+    arena = build_arena("symmetric", 2, 2.0, 0.16, 0.17, 0)
+    figure = heat_maps(PLACED, "t", arena)
+    *panels, colours = figure.axes
+    assert [axes.get_title() for axes in panels] == ["all: 4", "fight: 1", "flight: 3"]
+    limits = {axes.images[0].get_clim() for axes in panels}
+    assert limits == {(0.5, 1.0)}
+    # One game of two had the only fight: half a fight in each.
+    assert panels[1].images[0].get_array().sum() == 0.5
+    assert [text.get_text() for text in panels[0].texts] == ["station", "station", "S1", "S2"]
+    assert colours.get_ylabel() == "conflicts begun in 5 × 5 cm, a game"
+    assert encode(figure, "png")
+
+
+def test_heat_map_of_one_action_without_places() -> None:
+    panel, _ = heat_maps(PLACED[PLACED["action"] == "flight"].drop(columns="run")).axes
+    assert panel.get_title() == "all: 3"
+    assert list(panel.texts) == []
+    with pytest.raises(InputError, match="must hold at least one conflict"):
+        heat_maps(PLACED.head(0))
