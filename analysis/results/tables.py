@@ -57,7 +57,8 @@ def read_table(
         raise InputError("results", str(path), f"must have the missing columns {', '.join(missing)}")
     filters = None if runs is None else [("run", "in", set(runs))]
     with _readable(path):
-        rows: pd.DataFrame = pq.read_table(path, columns=columns and list(columns), filters=filters).to_pandas()
+        found = pq.read_table(path, columns=columns and list(columns), filters=filters)
+        rows: pd.DataFrame = found.to_pandas()
     return check_columns(rows, table, required)
 
 
