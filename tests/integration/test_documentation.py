@@ -7,6 +7,7 @@ import shlex
 import subprocess
 import sys
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -121,6 +122,14 @@ def test_every_command_of_the_documentation_exists() -> None:
     assert {"list", "show", "run", "calibrate"} <= commands
     for command in sorted(commands):
         assert invoke([command, "--help"]) == 0
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_the_imports_shown_on_a_page_work(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    for module, names in re.findall(r"^(?:>>> )?from (kswarms[\w.]*) import ([\w, ]+)$", text, re.MULTILINE):
+        for name in names.split(", "):
+            assert hasattr(import_module(module), name) or import_module(f"{module}.{name}")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
