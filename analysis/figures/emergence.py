@@ -1,8 +1,7 @@
-"""How a policy emerges: choices and Q over the time of learning, and what each robot made of it in the end.
+"""Figures of emerging policies: choices and Q over the time of learning, and final Q of each robot.
 
-Choices and Q are of rows of `conflicts.parquet`, or of the table of a model's DataCollector
-(`model.datacollector.get_table_dataframe("conflicts")`), of one game; what robots ended with is of
-`robots.parquet`.
+Choices and Q are drawn from the conflicts of one game: rows of `conflicts.parquet` or of a DataCollector's
+table (`model.datacollector.get_table_dataframe("conflicts")`). Final Q is drawn from `robots.parquet`.
 """
 
 from collections.abc import Callable

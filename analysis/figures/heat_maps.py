@@ -1,4 +1,4 @@
-"""Where conflicts happen: heat maps of rows of `conflicts.parquet`, or of a DataCollector's table."""
+"""Heat maps of the places where conflicts begin."""
 
 import numpy as np
 import pandas as pd
@@ -16,21 +16,21 @@ from kswarms.analysis.measures.conflict_density import CELL, conflict_density
 
 
 def heat_maps(conflicts: pd.DataFrame, title: str = "", places: Places | None = None) -> Figure:
-    """Draw where conflicts happen: all of them, and those with each action.
+    """Draw the places where conflicts begin: all conflicts, and conflicts with each action.
 
     Parameters
     ----------
     conflicts : pandas.DataFrame
-        Conflicts of one game or several.
+        Conflicts of one or several games: rows of `conflicts.parquet` or of a DataCollector's table.
     title : str
-        What it is of.
+        Heading.
     places : Places, optional
-        Stations and bases to be drawn in.
+        Arena, whose stations and bases are drawn into the maps.
 
     Returns
     -------
     matplotlib.figure.Figure
-        A panel for all conflicts and one for each action, of one logarithmic scale; black is none.
+        Panels with a common logarithmic scale; cells without conflicts are black.
 
     Raises
     ------
@@ -40,16 +40,14 @@ def heat_maps(conflicts: pd.DataFrame, title: str = "", places: Places | None = 
     if conflicts.empty:
         raise InputError("conflicts", "no rows", "must hold at least one conflict")
     half = places.half if places is not None else 1.0
-    actions = sorted(set(conflicts["action"]))
     kinds = {f"all: {len(conflicts):,}": conflicts}
-    if len(actions) > 1:
-        of_action = {action: conflicts[conflicts["action"] == action] for action in actions}
-        kinds |= {f"{action}: {len(rows):,}": rows for action, rows in of_action.items()}
+    if conflicts["action"].nunique() > 1:
+        kinds |= {f"{action}: {len(rows):,}": rows for action, rows in conflicts.groupby("action")}
     games = conflicts["run"].nunique() if "run" in conflicts else 1
-    # Logarithmic, or a corner in which two hold each other would leave the rest of the arena black.
+    # Two robots stuck in a corner have so many conflicts that a linear scale would show only them.
     norm = LogNorm(1 / games, max(conflict_density(conflicts, half).max(), 2 / games))
     colours = colormaps["magma"].with_extremes(bad="black")
-    side = f"{100 * CELL:.0f}"
+    label = f"conflicts per game and {100 * CELL:.0f} × {100 * CELL:.0f} cm"
     with sheet(title, width=max(5.5, 4.0 * len(kinds)), height=4.4) as figure:
         panels = figure.subplots(1, len(kinds), squeeze=False, sharey=True)[0]
         for axes, (name, rows) in zip(panels, kinds.items(), strict=True):
@@ -70,7 +68,7 @@ def heat_maps(conflicts: pd.DataFrame, title: str = "", places: Places | None = 
             axes.grid(False)
             if places is not None:
                 _draw_places(axes, places)
-        figure.colorbar(image, ax=panels, shrink=0.8, label=f"conflicts begun in {side} × {side} cm, a game")
+        figure.colorbar(image, ax=panels, shrink=0.8, label=label)
     return figure
 
 
@@ -80,8 +78,8 @@ def _draw_places(axes: Axes, places: Places) -> None:
             Circle(tuple(station), places.station_radius, fill=False, color="white", linewidth=1.5)
         )
         axes.annotate("station", station, color="white", ha="center", va="center", fontsize="small")
-    for index, base in enumerate(places.bases):
-        colour = swarm_colour(index + 1)
+    for swarm, base in enumerate(places.bases, 1):
+        colour = swarm_colour(swarm)
         axes.add_patch(Circle(tuple(base), places.base_radius, fill=False, color="white", linewidth=3))
         axes.add_patch(Circle(tuple(base), places.base_radius, fill=False, color=colour, linewidth=1.5))
-        axes.annotate(f"S{index + 1}", base, color="white", ha="center", va="center", fontsize="small")
+        axes.annotate(f"S{swarm}", base, color="white", ha="center", va="center", fontsize="small")

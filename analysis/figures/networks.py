@@ -1,6 +1,7 @@
 """Figures of the network of conflicts of one game, and of its jams over time."""
 
 from collections.abc import Sequence
+from typing import Final
 
 import networkx as nx
 import numpy as np
@@ -14,30 +15,31 @@ from kswarms.analysis.colours import swarm_colour
 from kswarms.analysis.figures.style import CONDITION_COLOURS, legend_below, sheet
 from kswarms.analysis.measures.networks import SMALLEST_JAM
 
-_SMOOTHED = 15
-"""Moments that a thick line of jams is the mean of."""
+_WINDOW: Final = 15
+"""Number of moments in a moving mean of jams."""
 
 
 def network_figure(network: nx.Graph, title: str = "") -> Figure:
-    """Draw who met whom: robots around a circle, swarm by swarm, and the time of each pair as a matrix.
+    """Draw a network of meetings as a circle of robots and as a matrix.
 
     Parameters
     ----------
     network : networkx.Graph
-        As `meeting_network` returns it, with at least one edge.
+        Result of `meeting_network` with at least one edge.
     title : str
-        What it is of.
+        Heading.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Left the network, the wider and darker an edge the longer the two met, grey within a swarm and black
-        between swarms; right the same times (s), logarithmic, robots in the same order; grey never met.
+        Left: the longer two robots were in conflict, the wider and darker their edge; edges within a swarm
+        are grey, edges between swarms black. Right: the same times (s) with robots in the same order, on a
+        logarithmic scale; pairs that never met are grey.
     """
     swarm = nx.get_node_attributes(network, "swarm")
     order = sorted(network, key=lambda robot: (swarm[robot], robot))
     times = nx.to_numpy_array(network, nodelist=order, weight="time")
-    most = times.max()
+    longest, shortest = times.max(), times[times > 0].min()
     with sheet(title, width=11.0, height=5.6) as figure:
         circle, matrix = figure.subplots(1, 2)
         places = nx.circular_layout(order)
@@ -47,34 +49,32 @@ def network_figure(network: nx.Graph, title: str = "") -> Figure:
                 network,
                 places,
                 edgelist=[(a, b) for a, b, _ in edges],
-                width=[4 * (time / most) ** 0.5 for *_, time in edges],
-                alpha=[0.05 + 0.65 * time / most for *_, time in edges],
+                width=[4 * (time / longest) ** 0.5 for *_, time in edges],
+                alpha=[0.05 + 0.65 * time / longest for *_, time in edges],
                 edge_color=colour,
                 ax=circle,
             )
             circle.plot([], [], color=colour, linewidth=3, label=f"{kind}-swarm meetings")
         for name in sorted(set(swarm.values())):
-            of_swarm = [robot for robot in order if swarm[robot] == name]
+            x, y = zip(*(places[robot] for robot in order if swarm[robot] == name), strict=True)
             colour = swarm_colour(name)
-            spots = np.array([places[robot] for robot in of_swarm])
-            circle.scatter(*spots.T, s=120, color=colour, edgecolors="white", zorder=3, label=f"S{name}")
+            circle.scatter(x, y, s=120, color=colour, edgecolors="white", zorder=3, label=f"S{name}")
         circle.set_axis_off()
         circle.set_aspect("equal")
-        # Few pairs hold each other for long: a linear scale would show these alone.
-        least = times[times > 0].min()
+        # Few pairs are in conflict for very long; a linear scale would show only them.
         image = matrix.imshow(
             np.ma.masked_equal(times, 0),
             cmap=colormaps["viridis"].with_extremes(bad="0.85"),
-            norm=LogNorm(least, max(most, 2 * least)),
+            norm=LogNorm(shortest, max(longest, 2 * shortest)),
         )
-        _name_swarms(matrix, [swarm[robot] for robot in order])
+        _label_swarms(matrix, [swarm[robot] for robot in order])
         figure.colorbar(image, ax=matrix, label="time of the two in conflict with each other, T(a) (s)")
         legend_below(figure)
     return figure
 
 
-def _name_swarms(axes: Axes, swarms: Sequence[int]) -> None:
-    """Name the swarms along both sides of a matrix whose robots lie swarm by swarm, and part them."""
+def _label_swarms(axes: Axes, swarms: Sequence[int]) -> None:
+    """Label the swarms along both sides of a matrix that is sorted by swarm, and draw lines between them."""
     names = sorted(set(swarms))
     middles = [np.flatnonzero(np.array(swarms) == name).mean() for name in names]
     axes.set_xticks(middles, [f"S{name}" for name in names])
@@ -92,25 +92,21 @@ def jams_figure(over_time: pd.DataFrame, title: str = "") -> Figure:
     Parameters
     ----------
     over_time : pandas.DataFrame
-        As `jams` returns it.
+        Result of `kswarms.analysis.measures.networks.jams`.
     title : str
-        What it is of.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+        Heading.
     """
+    time = over_time["time"]
     with sheet(title, width=11.0, height=4.2) as figure:
         axes = figure.subplots()
-        time = over_time["time"]
         labels = {"jammed": f"in jams of {SMALLEST_JAM} or more", "largest": "in the largest cluster"}
         for (quantity, label), colour in zip(labels.items(), CONDITION_COLOURS, strict=False):
             axes.step(time, over_time[quantity], where="post", color=colour, linewidth=0.8, alpha=0.3)
-            smooth = over_time[quantity].rolling(_SMOOTHED, center=True, min_periods=1).mean()
+            smooth = over_time[quantity].rolling(_WINDOW, center=True, min_periods=1).mean()
             axes.plot(time, smooth, color=colour, linewidth=2, label=label)
         axes.set_xlabel("time (s)")
         axes.set_ylabel("robots")
         axes.set_ylim(bottom=0)
         axes.margins(x=0)
-        legend_below(figure, f"thin: at each moment, thick: mean of {_SMOOTHED} moments")
+        legend_below(figure, f"thin: each moment, thick: moving mean of {_WINDOW} moments")
     return figure

@@ -1,6 +1,6 @@
 """Figures of scenarios over the number of robots, from the rows of `runs.parquet` and `policies.parquet`.
 
-Figures are plain `matplotlib.figure.Figure` objects: no window opens and no global setting changes.
+Figures are `matplotlib.figure.Figure` objects; no window opens, and global settings do not change.
 """
 
 from collections.abc import Mapping, Sequence
@@ -40,17 +40,18 @@ def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "", detail: boo
     Parameters
     ----------
     runs : pandas.DataFrame
-        Rows of `runs.parquet`, as `kswarms.analysis.results.runs.read_runs` returns them.
+        Rows of `runs.parquet`.
     scenario : str
-        Id of the scenario to draw; its conditions, if several, are drawn as a curve each.
+        Id of the scenario.
     title : str
-        What the scenario is, printed after its id.
+        Title of the scenario, which follows its id in the heading.
     detail : bool
         Whether intervals and single seeds are drawn; the source shows means only.
 
     Returns
     -------
     matplotlib.figure.Figure
+        A curve for each condition and swarm.
 
     Raises
     ------
@@ -70,20 +71,8 @@ def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "", detail: boo
 def time_shares(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool = True) -> Figure:
     """Draw the share of time in conflict, T(a) / (T(a) + T(p)), over the number of robots (Fig. 6.3).
 
-    Parameters
-    ----------
-    runs, scenario, title, detail
-        As for `pucks_over_n`.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Three panels of one scale: all conflicts, those with other swarms, those within the own.
-
-    Raises
-    ------
-    InputError
-        `runs` has no row of the scenario.
+    Parameters and errors are those of `pucks_over_n`. Three panels show all conflicts, conflicts with other
+    swarms, and conflicts within the swarm.
     """
     rows = with_time_shares(of_scenario(runs, scenario))
     with sheet(heading(scenario, title), width=11.0) as figure:
@@ -103,21 +92,7 @@ def sud_over_n(
 ) -> Figure:
     """Draw the Swarm Utility Difference (Eq. 3.7) of one swarm over the number of robots.
 
-    Parameters
-    ----------
-    runs, scenario, title, detail
-        As for `pucks_over_n`.
-    swarm : int
-        Number of the swarm, 1 … K; the source shows S2.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-
-    Raises
-    ------
-    InputError
-        `runs` has no row of the scenario, or none of that swarm in it.
+    Parameters and errors are those of `pucks_over_n`. The number of the swarm is 1 … K; the source shows S2.
     """
     rows = of_scenario(runs, scenario)
     swarms = sorted(set(rows["swarm"]))
@@ -134,31 +109,31 @@ def sud_over_n(
 
 
 def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[str] = ()) -> Figure:
-    """Draw what robots learned over the number of robots, with what was published as crosses.
+    """Draw the share of robots that learned an action over the number of robots.
 
     Parameters
     ----------
     cells : pandas.DataFrame
-        As `kswarms.analysis.tables.learned.learned_shares` returns them.
+        Result of `kswarms.analysis.tables.learned.learned_shares`.
     title : str
-        What they are of.
+        Heading.
     conditions : sequence of str
-        Conditions of another figure, in their order there, whose colours theirs are.
+        Conditions of the scenario in the order of its other figure, so that both have the same colours.
 
     Returns
     -------
     matplotlib.figure.Figure
-        A curve for each scenario, condition, learning swarm and opponent with its 95 % interval; where the
-        source gives numbers, a cross of the same colour on a dotted line.
+        A curve with its 95 % interval for each scenario, condition, learning swarm and opponent. Published
+        numbers are crosses of the same colour on a dotted line.
     """
     with sheet(title) as figure:
         axes = figure.subplots()
-        several = cells.groupby("condition")["opponent"].nunique().max() > 1
-        for place, (name, column) in enumerate(named_columns(cells)):
-            condition, opponent = column["condition"].iloc[0], column["opponent"].iloc[0]
-            index = list(conditions).index(condition) if len(conditions) > 1 else place
-            own = several and len(conditions) > 1
-            style = condition_style(index, opponent if own else None)
+        several_opponents = cells.groupby("condition")["opponent"].nunique().max() > 1
+        for index, (name, column) in enumerate(named_columns(cells)):
+            style = condition_style(index)
+            if len(conditions) > 1:
+                condition, opponent = column["condition"].iloc[0], column["opponent"].iloc[0]
+                style = condition_style(conditions.index(condition), opponent if several_opponents else None)
             axes.fill_between(column["n"], column["low"], column["high"], color=style.colour, alpha=0.2, lw=0)
             draw_line(axes, column["n"], column["measured"], style, name)
             if column["published"].notna().any():
@@ -168,31 +143,19 @@ def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[st
         axes.set_xticks(sorted(set(cells["n"])))
         axes.set_xlabel("number of robots in all, N")
         learned = set(cells["learned"])
-        what = "to attack" if learned == {"attack"} else "flight within" if len(learned) == 1 else "so"
-        axes.set_ylabel(f"robots that learned {what} (%)")
-        legend_below(figure, "learned, measured with its 95 % interval")
+        action = "to attack" if learned == {"attack"} else "flight within" if len(learned) == 1 else "it"
+        axes.set_ylabel(f"robots that learned {action} (%)")
+        legend_below(figure, "learned action; band: 95 % interval of the measured share")
     return figure
 
 
 def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool = True) -> Figure:
-    """Draw what the source shows of a scenario: pucks, SUD of S2 or shares of time over the number of robots.
+    """Draw the quantity that the source shows of a scenario: pucks, SUD of S2 or shares of time.
 
-    Parameters
-    ----------
-    runs, scenario, title, detail
-        As for `pucks_over_n`.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-
-    Raises
-    ------
-    InputError
-        `runs` has no row of the scenario.
+    Parameters, return value and errors are those of `pucks_over_n`.
     """
-    shown = {("sud",): sud_over_n, TIME_SHARES: time_shares}.get(quantities(scenario), pucks_over_n)
-    return shown(runs, scenario, title, detail)
+    draw = {("sud",): sud_over_n, TIME_SHARES: time_shares}.get(quantities(scenario), pucks_over_n)
+    return draw(runs, scenario, title, detail)
 
 
 def write_figures(

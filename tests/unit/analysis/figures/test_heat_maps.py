@@ -19,7 +19,7 @@ def test_heat_maps_of_all_and_of_each_action_share_a_scale() -> None:
     # One game of two had the only fight: half a fight in each.
     assert panels[1].images[0].get_array().sum() == 0.5
     assert [text.get_text() for text in panels[0].texts] == ["station", "station", "S1", "S2"]
-    assert colours.get_ylabel() == "conflicts begun in 5 × 5 cm, a game"
+    assert colours.get_ylabel() == "conflicts per game and 5 × 5 cm"
     assert encode(figure, "png")
 
 
