@@ -259,30 +259,6 @@ def test_the_same_runs_give_the_same_bytes(tmp_path: Path) -> None:
     assert path.read_bytes() != first
 
 
-def test_an_interrupted_write_leaves_the_old_figure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    runs_of("fig-x").to_parquet(tmp_path / "runs.parquet")
-    (path,) = write_figures(tmp_path, tmp_path / "figures")
-    first = path.read_bytes()
-
-    def full_disk(part: Path, content: bytes) -> None:
-        with part.open("wb") as file:
-            file.write(content[:100])
-        raise OSError("No space left on device")
-
-    monkeypatch.setattr(Path, "write_bytes", full_disk)
-    with pytest.raises(InputError, match="must be a writable file"):
-        write_figures(tmp_path, tmp_path / "figures", titles={"fig-x": "another title"})
-    assert path.read_bytes() == first
-    assert list(path.parent.iterdir()) == [path]
-
-
-def test_a_folder_that_cannot_be_created_is_an_error(tmp_path: Path) -> None:
-    runs_of("fig-x").to_parquet(tmp_path / "runs.parquet")
-    (tmp_path / "figures").write_text("in the way")
-    with pytest.raises(InputError, match="must be a writable file"):
-        write_figures(tmp_path, tmp_path / "figures")
-
-
 def test_global_settings_do_not_change(tmp_path: Path) -> None:
     runs_of("fig-6.3").to_parquet(tmp_path / "runs.parquet")
     before = dict(mpl.rcParams)

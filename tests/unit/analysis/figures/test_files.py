@@ -1,0 +1,60 @@
+"""Figures as PNG and SVG files."""
+
+from pathlib import Path
+
+import pytest
+from matplotlib.figure import Figure
+
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.figures.files import encode, encode_all, save
+
+
+def figure(height: int = 3) -> Figure:
+    drawn = Figure(figsize=(2, 1))
+    drawn.subplots().plot([1, 2], [height, 4])
+    return drawn
+
+
+def test_the_same_figure_has_the_same_bytes() -> None:
+    for kind in ("svg", "png"):
+        assert encode(figure(), kind) == encode(figure(), kind) != encode(figure(2), kind)
+    assert b"<svg" in encode(figure(), "svg")
+
+
+def test_an_unknown_format_is_an_error() -> None:
+    with pytest.raises(InputError, match="format='gif': must be one of png, svg"):
+        encode(figure(), "gif")
+
+
+def test_the_smallest_format_has_the_fewest_bytes() -> None:
+    encoded = encode_all(figure())
+    assert (encoded.width, encoded.height) == (192, 96)
+    assert len(encoded.files[encoded.smallest]) == min(map(len, encoded.files.values()))
+
+
+def test_a_figure_is_saved_in_the_format_of_the_suffix(tmp_path: Path) -> None:
+    save(figure(), tmp_path / "figures" / "a.SVG")
+    assert (tmp_path / "figures" / "a.SVG").read_bytes() == encode(figure(), "svg")
+
+
+def test_an_interrupted_write_leaves_the_old_figure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "a.png"
+    save(figure(), path)
+    old = path.read_bytes()
+
+    def full_disk(part: Path, content: bytes) -> None:
+        with part.open("wb") as file:
+            file.write(content[:100])
+        raise OSError("No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", full_disk)
+    with pytest.raises(InputError, match=r"must be a writable file \(No space left on device\)"):
+        save(figure(2), path)
+    assert path.read_bytes() == old
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_folder_that_cannot_be_created_is_an_error(tmp_path: Path) -> None:
+    (tmp_path / "figures").write_text("a file")
+    with pytest.raises(InputError, match="must be a writable file"):
+        save(figure(), tmp_path / "figures" / "a.png")
