@@ -30,7 +30,7 @@ def model() -> ForagingModel:
         (time_share_over_time, "share_a", "share of time in conflict so far"),
     ],
 )
-def test_a_curve_over_time_has_the_samples_of_each_swarm(model: ForagingModel, draw: type, column: str, label: str) -> None:
+def test_curves_over_time_show_the_samples(model: ForagingModel, draw: type, column: str, label: str) -> None:
     samples = model.datacollector.get_model_vars_dataframe()
     (axes,) = draw(samples, "one game").axes
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("time (s)", label)
