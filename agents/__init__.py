@@ -1,1 +1,1 @@
-"""Krembots: their bodies, senses, actions, policies and lives. Knows nothing of the model they live in."""
+"""Robots: bodies, senses, actions, policies and behaviour. Independent of the model."""

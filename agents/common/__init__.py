@@ -1,1 +1,1 @@
-"""What all packages share: errors, validated data, atomic files, compilation, limits."""
+"""Shared by all packages: errors, validated data, atomic files, compilation, limits, columns of tables."""

@@ -1,4 +1,4 @@
-"""Files that are there whole or not at all, whoever writes them and whatever stops it."""
+"""Atomic file writing."""
 
 import os
 from collections.abc import Generator
@@ -6,57 +6,46 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
-UNFINISHED: Final = ".unfinished-"
-"""How the name of what is not whole yet begins."""
+TEMPORARY: Final = ".unfinished-"
+"""Prefix of the names of temporary files."""
 
 
 @contextmanager
-def whole(path: Path) -> Generator[Path, None, None]:
-    """Give a file to write to, which takes the place of another once it is whole.
+def atomic_path(path: Path) -> Generator[Path, None, None]:
+    """Yield a temporary path; on success it replaces `path`.
 
-    Parameters
-    ----------
-    path : Path
-        What is to be written. The file given lies beside it and has its suffix; processes that write the
-        same are given files of their own.
+    The temporary file is in the same directory and has the same suffix. Each process has its own.
 
     Raises
     ------
     OSError
-        If it cannot be written; then it is as it was.
+        If the file cannot be written; then `path` is unchanged.
     """
-    unfinished = path.with_name(f"{UNFINISHED}{os.getpid()}-{path.name}")
+    temporary = path.with_name(f"{TEMPORARY}{os.getpid()}-{path.name}")
     try:
-        yield unfinished
-        unfinished.replace(path)
+        yield temporary
+        temporary.replace(path)
     finally:
-        unfinished.unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
 
 
-def remove_unfinished(directory: Path) -> None:
-    """Remove what `whole` has left in a directory of processes that were killed.
-
-    Files of processes that live are kept, for they may be finishing them.
-
-    Parameters
-    ----------
-    directory : Path
-        Where they lie, not below.
+def remove_temporary_files(directory: Path) -> None:
+    """Remove temporary files of killed processes from a directory; files of running processes stay.
 
     Raises
     ------
     OSError
-        If one cannot be removed.
+        If a file cannot be removed.
     """
-    for left in directory.glob(f"{UNFINISHED}*-*"):
-        process = left.name.removeprefix(UNFINISHED).partition("-")[0]
-        if process.isdecimal() and not _lives(int(process)):
-            left.unlink(missing_ok=True)
+    for temporary in directory.glob(f"{TEMPORARY}*-*"):
+        process = temporary.name.removeprefix(TEMPORARY).partition("-")[0]
+        if process.isdecimal() and not _is_running(int(process)):
+            temporary.unlink(missing_ok=True)
 
 
-def _lives(process: int) -> bool:
+def _is_running(process: int) -> bool:
     try:
-        os.kill(process, 0)  # which does nothing to it
+        os.kill(process, 0)  # signal 0 does nothing
     except PermissionError:
         return True
     except (ProcessLookupError, OverflowError):

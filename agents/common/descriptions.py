@@ -1,4 +1,4 @@
-"""Base class of every description: immutable data, checked once, at the edge."""
+"""Base class of validated, immutable data."""
 
 from typing import Any, Self, get_args
 
@@ -8,13 +8,13 @@ from kswarms.agents.common.errors import InputError
 
 
 def _is_number(annotation: Any) -> bool:
-    """Tell whether a field takes numbers, maybe among other things, but no truth values."""
+    """Return whether a field takes numbers but no booleans."""
     kinds = (annotation, *get_args(annotation))
     return (int in kinds or float in kinds) and bool not in kinds
 
 
 class Checked(BaseModel):
-    """Frozen data without unknown fields, NaN or infinities.
+    """Frozen data; unknown fields, NaN and infinities are refused.
 
     Raises
     ------
@@ -24,7 +24,7 @@ class Checked(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
-    # `/`, so that a user's field of the name self is one that there is not.
+    # `/`, so that a field named self is reported as unknown.
     def __init__(self, /, **values: Any) -> None:
         try:
             super().__init__(**values)
@@ -34,7 +34,7 @@ class Checked(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _no_truth_for_numbers(cls, values: Any) -> Any:
-        # pydantic takes true for 1, so `seeds = true` would be played as one game.
+        # pydantic accepts true as 1, so `seeds = true` would mean one seed.
         for name, value in values.items() if isinstance(values, dict) else ():
             field = cls.model_fields.get(name)
             if isinstance(value, bool) and field is not None and _is_number(field.annotation):
@@ -42,5 +42,5 @@ class Checked(BaseModel):
         return values
 
     def replace(self, /, **changes: Any) -> Self:
-        """Return a copy with some fields changed, checked like a new one."""
+        """Return a validated copy with some fields changed."""
         return type(self)(**{**dict(self), **changes})

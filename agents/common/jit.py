@@ -1,8 +1,8 @@
-"""The decorator of every compiled function, and what keeps its cache honest.
+"""Compilation of functions with numba, with a cache on disk.
 
-Numba caches a compiled function, beside its source or where it is told to, and compiles it anew when that one
-file changes. A function that was compiled into its caller can change without the caller's file, so all cached
-code that is older than any source of the packages with kernels is dropped on import.
+Numba recompiles a cached function when its source file changes, but not when a function that it calls changes
+in another file. Therefore cached code that is older than any source of the packages with kernels is deleted on
+import.
 """
 
 import contextlib
@@ -17,25 +17,24 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
 def compiled(function: _Function) -> _Function:
-    """Compile a function of numbers and arrays with numba, and cache the machine code on disk.
+    """Compile a function of numbers and arrays with numba and cache the machine code.
 
-    Division by zero gives infinities and NaN as in numpy; nothing else about floating point is relaxed. A
-    compiled function allocates nothing, so that numba need not count who holds which array: counting took a
-    tenth of a game.
+    Division by zero gives infinities and NaN as in numpy. Compiled functions must not allocate arrays: numba's
+    reference counting is off, which saves a tenth of a game's time.
     """
     compile_it = njit(cache=True, error_model="numpy", _nrt=False)(function)  # type: ignore[call-overload]  # not in its stubs
-    _drop_stale_code(Path(compile_it._cache.cache_path))
+    _delete_stale_code(Path(compile_it._cache.cache_path))
     return cast(_Function, compile_it)
 
 
 @cache
-def _drop_stale_code(directory: Path) -> None:
-    """Drop what is cached in a directory of numba's, once in a process."""
+def _delete_stale_code(directory: Path) -> None:
+    """Delete stale machine code from a cache directory, once per process."""
     root = Path(__file__).resolve().parents[2]
     sources = [path for package in ("agents", "model") for path in (root / package).rglob("*.py")]
     newest = max(path.stat().st_mtime for path in sources)
     for cached in directory.glob("*.nb[ic]"):
-        # Another process may drop it first, or the installation be read-only.
+        # Another process may delete it first, or the installation may be read-only.
         with contextlib.suppress(OSError):
             if cached.stat().st_mtime < newest:
                 cached.unlink()

@@ -1,1 +1,1 @@
-"""What a robot learns with: the bandit, selection rules and rewards."""
+"""Learning: bandit, selection rules and rewards."""

@@ -1,10 +1,10 @@
-"""A multi-armed bandit whose arms are actions of different length (specification, section 1.5)."""
+"""Multi-armed bandit with arms of different duration (specification, section 1.5)."""
 
 import math
 
 
 class Bandit:
-    """What a robot has learned about conflicts with one swarm.
+    """A robot's experience of conflicts with one swarm.
 
     Parameters
     ----------
@@ -18,9 +18,9 @@ class Bandit:
     time : list of float, length `arms`
         Σ (T(a) + T(p)) of each arm (s).
     count : list of float, length `arms`
-        N(a): conflicts in which the arm was taken, discounted where the rule discounts.
+        N(a), number of conflicts with the arm, discounted if the rule discounts.
     choices : int
-        Choices made so far, those of conflicts that are still open included.
+        Number of choices so far, including open conflicts.
     """
 
     __slots__ = ("choices", "count", "reward", "time")
@@ -37,13 +37,13 @@ class Bandit:
         Parameters
         ----------
         arm : int
-            The action taken.
+            Arm of the action.
         reward : float
             R of the conflict (s).
         time : float
             T(a) + T(p) of the conflict (s).
         discount : float
-            Factor by which all that was there before loses weight, λ of discounted UCB.
+            Factor for earlier conflicts, λ of discounted UCB.
         """
         if discount != 1.0:
             for sums in (self.reward, self.time, self.count):
@@ -53,11 +53,11 @@ class Bandit:
         self.count[arm] += 1.0
 
     def value(self, arm: int) -> float:
-        """Return Q(a) = Σ R / Σ (T(a) + T(p)) (Eq. 4.15), NaN if the arm was never tried."""
+        """Return Q(a) = Σ R / Σ (T(a) + T(p)) (Eq. 4.15), NaN if the arm is untried."""
         return self.reward[arm] / self.time[arm] if self.time[arm] > 0.0 else math.nan
 
     def best(self) -> int | None:
-        """Return the tried arm of the greatest Q, the first of equals; none if nothing was tried."""
+        """Return the tried arm with the greatest Q, the first of equals; None if no arm was tried."""
         tried = [arm for arm, count in enumerate(self.count) if count > 0.0]
         return max(tried, key=self.value, default=None)
 

@@ -1,1 +1,1 @@
-"""What decides at a conflict: fixed, learning, saved and user-defined policies."""
+"""Policies: fixed, learning, saved and user-defined."""

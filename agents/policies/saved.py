@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from kswarms.agents.actions import AWAY, Action
-from kswarms.agents.common.atomic_files import whole
+from kswarms.agents.common.atomic_files import atomic_path
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.interface import Policy, Setting
@@ -125,7 +125,7 @@ def save(path: Path, swarm: int, robots: Sequence[Sequence[Mapping[str, Any]]]) 
     """
     arms_of_robots = [[_without_nan(arm) for arm in arms] for arms in robots]
     text = json.dumps({"format": _FORMAT, "swarm": swarm, "robots": arms_of_robots}, indent=1)
-    with whole(path) as file:
+    with atomic_path(path) as file:
         file.write_text(text, encoding="utf-8")
 
 

@@ -1,6 +1,6 @@
-"""What a robot can compute of its WLU from its own sensors (specification, section 1.4).
+"""Estimates of the WLU from a robot's own sensors (specification, section 1.4).
 
-The weight of program time has been divided by β_i, so that results are in seconds.
+All weights are divided by β_i, so results are in seconds.
 """
 
 from kswarms.agents.body import SENSORS
@@ -17,11 +17,11 @@ def estimated_wlu(program: float, t_a: float, t_p: float, n_active: int, sign: i
     Parameters
     ----------
     program : float
-        What stands for Γ/n': 1 for identical swarms (Eq. 6.2), else by Eq. 7.1 or 7.2.
+        Γ/n': 1 for identical swarms (Eq. 6.2), else by Eq. 7.1 or 7.2.
     t_a, t_p : float
         T(a) and T(p) (s).
     n_active : int
-        n'_i: sensors that were active.
+        n'_i, number of active sensors.
     sign : {-1, 1}
         σ of Eq. 5.5.
     delta : float
@@ -31,23 +31,23 @@ def estimated_wlu(program: float, t_a: float, t_p: float, n_active: int, sign: i
 
 
 def identical_swarms_wlu(n_k: int, n_m: int, t_a: float, t_p: float, alpha: float, beta: float) -> float:
-    """Return T(p) + ((n_m − n_k) β − 2 n_k α)/(nβ) · T(a), equal weights and times for all (Eq. 6.1).
+    """Return T(p) + ((n_m − n_k) β − 2 n_k α)/(nβ) · T(a), for equal weights and times of all (Eq. 6.1).
 
-    It is Eq. 5.2 divided by β. Eq. 6.2 estimates its second term.
+    This is Eq. 5.2 divided by β. Eq. 6.2 estimates its second term.
     """
     return t_p + ((n_m - n_k) * beta - 2 * n_k * alpha) / ((n_k + n_m) * beta) * t_a
 
 
 def program_weight(n_k: int, n_m: int, b: float) -> float:
-    """Return (n_k + (2 − b) n_m)/n, by which T(p) counts where β_m = b β_i (Eq. 7.1)."""
+    """Return (n_k + (2 − b) n_m)/n, the weight of T(p) for β_m = b β_i (Eq. 7.1)."""
     return (n_k + (2 - b) * n_m) / (n_k + n_m)
 
 
 def program_weight_of_equals(b: float) -> float:
-    """Return (3 − b)/2, the value of Eq. 7.1 for n_k = n_m, whom a robot cannot count (Eq. 7.2)."""
+    """Return (3 − b)/2, Eq. 7.1 for n_k = n_m, since a robot cannot count them (Eq. 7.2)."""
     return 0.5 * (3.0 - b)
 
 
 def kappa(alpha_i: float, alpha_k: float, beta: float) -> float:
-    """Return κ = (α_i + ᾱ_k + β)/β, by which T(a) counts in a swarm that is alone (section 6.3.5)."""
+    """Return κ = (α_i + ᾱ_k + β)/β, the weight of T(a) in a game of one swarm (section 6.3.5)."""
     return (alpha_i + alpha_k + beta) / beta

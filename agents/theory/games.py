@@ -1,8 +1,8 @@
 """The forms of a multi-swarm game: extensive, normal, polymatrix (specification, section 1.1).
 
-A player meets one robot at a time. Nature draws which swarm it is of, then both choose an action at once;
-since nothing of an interaction outlasts it, the tree folds into one game in normal form for each swarm-ID.
-Swarm-IDs count from 1 here, as users write them.
+A player meets one robot at a time. Nature draws the robot's swarm, then both players choose an action
+simultaneously. Interactions are independent, so the tree folds into one normal form for each swarm-ID.
+Swarm-IDs count from 1.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,27 +20,27 @@ from kswarms.agents.theory.swarms import opponents_utility
 NATURE: Final = "Nature"
 OWN: Final = "own"
 MET: Final = "met"
-"""Who decides at a node of the extensive form: Nature, the player itself, or the one that it meets."""
+"""Players of the extensive form: Nature, the player itself, and the robot that it meets."""
 
 _TOLERANCE: Final = 1e-9
-"""Payoffs that differ by less than this part of the largest of them are equal."""
+"""Relative tolerance for the equality of payoffs."""
 
 
 @dataclass(frozen=True, eq=False)
 class NormalForm:
-    """A game of two players, general-sum as within a swarm (Table 3.1).
+    """A two-player game, general-sum as within a swarm (Table 3.1).
 
     Parameters
     ----------
     rows, columns : tuple of str
-        Actions of the player itself and of the one that it meets.
+        Actions of the player itself and of the robot that it meets.
     own, met : ndarray of float64, shape (rows, columns)
-        Their payoffs.
+        Payoffs of both.
 
     Raises
     ------
     InputError
-        If two actions have one name, or the payoffs do not have this shape or are not finite.
+        If names of actions repeat, or payoffs have another shape or are not finite.
     """
 
     rows: tuple[str, ...]
@@ -61,46 +61,42 @@ class NormalForm:
             object.__setattr__(self, name, payoffs)
 
     def is_zero_sum(self) -> bool:
-        """Tell whether what one player gets the other one loses, as between swarms (Eq. 3.1)."""
+        """Return whether the payoffs sum to zero, as between swarms (Eq. 3.1)."""
         return bool(np.allclose(self.met, opponents_utility(self.own), rtol=0, atol=_tolerance(self.own)))
 
     def potential(self) -> Floats | None:
-        """Return an exact potential, shape (rows, columns), or None: see `exact_potential`."""
+        """Return an exact potential, shape (rows, columns), or None; see `exact_potential`."""
         return exact_potential((self.own, self.met))
 
 
 def zero_sum(rows: Sequence[str], columns: Sequence[str], own: Floats) -> NormalForm:
     """Return the game between players of two swarms, u_j^k = −u_i^m (Table 3.2).
 
-    Parameters
-    ----------
-    rows, columns : sequence of str
-        Actions of the player itself and of the one that it meets.
-    own : array_like of float, shape (rows, columns)
-        Payoffs of the player itself.
+    Parameters are those of `NormalForm`.
     """
     own = np.asarray(own, dtype=float)
     return NormalForm(tuple(rows), tuple(columns), own, opponents_utility(own))
 
 
 def exact_potential(payoffs: Sequence[Floats]) -> Floats | None:
-    """Return a function whose change is that of the payoff of whoever alone changes its action.
+    """Return an exact potential of a game.
+
+    When one player alone changes its action, the potential changes by the same amount as its payoff.
 
     Parameters
     ----------
     payoffs : sequence of ndarray of float64, length n, each of shape (A_1, …, A_n)
-        Payoff of each player under every combination of actions.
+        Payoff of each player for every combination of actions.
 
     Returns
     -------
     ndarray of float64, shape (A_1, …, A_n), or None
-        The potential that is 0 where all take their first action; None if the game has none.
+        The potential that is 0 at the first actions of all; None if the game has none.
     """
     tables = [np.asarray(payoff, dtype=float) for payoff in payoffs]
     potential = np.zeros(tables[0].shape)
     for profile in np.ndindex(potential.shape):
-        # From the first actions to the profile, one player after the other: in a potential game every way
-        # gives the same sum.
+        # Change the actions one player after the other. In a potential game every order gives the same sum.
         for i, table in enumerate(tables):
             rest = (0,) * (len(tables) - i - 1)
             potential[profile] += table[(*profile[: i + 1], *rest)] - table[(*profile[:i], 0, *rest)]
@@ -108,46 +104,41 @@ def exact_potential(payoffs: Sequence[Floats]) -> Floats | None:
 
 
 def is_potential(potential: Floats, payoffs: Sequence[Floats]) -> bool:
-    """Tell whether a function changes as the payoff of whoever alone changes its action.
+    """Return whether `potential` is an exact potential of the payoffs (see `exact_potential`).
 
-    For the players of one swarm, the actions of all others fixed, SUD is such a function of their WLU
+    For the players of one swarm, with the actions of all others fixed, SUD is a potential of their WLU
     (section 1.2).
-
-    Parameters
-    ----------
-    potential : array_like of float, shape (A_1, …, A_n)
-    payoffs : sequence of array_like of float, length n, each of the same shape
     """
     for i, payoff in enumerate(payoffs):
         rest = np.asarray(payoff, dtype=float) - potential
-        # What is left over does not depend on the own action.
+        # The difference must not depend on the own action.
         if np.ptp(rest, axis=i).max(initial=0.0) > _tolerance(payoff, potential):
             return False
     return True
 
 
 def extensive_form(forms: Mapping[int, NormalForm], chances: Mapping[int, float] | None = None) -> nx.DiGraph:
-    """Return the tree of an interaction: Nature draws whom a player meets, then both act at once (Fig. 3.1).
+    """Return the tree of an interaction: Nature draws a swarm, then both players act (Fig. 3.1).
 
     Parameters
     ----------
     forms : mapping of int to NormalForm
-        What the interaction with a robot of each swarm is worth.
+        The game with a robot of each swarm.
     chances : mapping of int to float, optional
-        Probability of each swarm; equal if not given.
+        Probability of each swarm; equal by default.
 
     Returns
     -------
     networkx.DiGraph
-        A tree from the root ``()``. Nodes are the moves made so far, (swarm, own action, action of the one
-        met), with ``player``: `NATURE`, `OWN`, `MET`, or empty at the leaves, which have ``payoffs`` (own,
-        met). Nodes of one ``information`` set look the same to whoever decides there: the one met does not
-        see what has been chosen. Edges have their ``action``, those of Nature a ``chance`` as well.
+        A tree with root ``()``. A node is the tuple of moves so far: swarm, own action, action of the other
+        robot. It has a ``player``, `NATURE`, `OWN` or `MET`, and an ``information`` set; the other robot does
+        not see the own action. Leaves have an empty player and ``payoffs`` (own, met). Edges have an
+        ``action``, those of Nature also a ``chance``.
 
     Raises
     ------
     InputError
-        If there is no swarm, or the chances are no probabilities of these swarms.
+        If there is no swarm, or the chances are not probabilities of these swarms.
     """
     if not forms:
         raise InputError("forms", {}, "must have a game for at least one swarm")
@@ -171,18 +162,12 @@ def extensive_form(forms: Mapping[int, NormalForm], chances: Mapping[int, float]
 
 
 def fold(tree: nx.DiGraph) -> dict[int, NormalForm]:
-    """Return the game in normal form for each swarm that Nature can draw (Tables 3.1, 3.2).
-
-    Parameters
-    ----------
-    tree : networkx.DiGraph
-        As `extensive_form` returns it.
+    """Return the normal form for each swarm of a tree from `extensive_form` (Tables 3.1, 3.2).
 
     Raises
     ------
     InputError
-        If the one met can tell its nodes apart, or has other actions in some of them: then the players do
-        not act at once, and there is no such form.
+        If the other robot's nodes differ in information or actions, so the players do not act simultaneously.
     """
     forms = {}
     for (swarm,) in tree.successors(()):
@@ -208,14 +193,13 @@ def polymatrix(forms: Mapping[tuple[int, int], NormalForm]) -> nx.Graph:
     Parameters
     ----------
     forms : mapping of (int, int) to NormalForm
-        The game of each pair k ≤ m, swarm k in the rows; k = m is the game within a swarm, and may be
-        missing.
+        The game of each pair k ≤ m, with swarm k in the rows. Games within a swarm, k = m, are optional.
 
     Returns
     -------
     networkx.Graph
-        Nodes are the swarms 1 … K, with their ``actions``; edges have their game as ``form``, self-loops
-        those within a swarm.
+        Nodes are the swarms 1 … K with their ``actions``, edges have their game as ``form``. Self-loops are
+        games within a swarm.
 
     Raises
     ------
@@ -237,19 +221,15 @@ def polymatrix(forms: Mapping[tuple[int, int], NormalForm]) -> nx.Graph:
 
 
 def is_pairwise_zero_sum(graph: nx.Graph) -> bool:
-    """Tell whether every game between two swarms of a polymatrix game is zero-sum (Eq. 3.1)."""
+    """Return whether every game between two swarms of a polymatrix game is zero-sum (Eq. 3.1)."""
     return all(form.is_zero_sum() for k, m, form in graph.edges(data="form") if k != m)
 
 
 def swarm_payoffs(graph: nx.Graph) -> Floats:
-    """Return U_Sk of every swarm of a polymatrix game, each acting as one.
+    """Return U_Sk of every swarm of a polymatrix game in which each swarm acts as one player.
 
-    Within a swarm, both players' payoffs are the swarm's.
-
-    Returns
-    -------
-    ndarray of float64, shape (K, A_1, …, A_K)
-        Swarm, then the action of each swarm.
+    The result has shape (K, A_1, …, A_K): swarm, then the action of each swarm. Within a swarm, the payoffs
+    of both players count.
     """
     swarms = sorted(graph.nodes)
     shape = [len(graph.nodes[swarm]["actions"]) for swarm in swarms]

@@ -1,7 +1,7 @@
 """Utilities of players and swarms, and the Swarm Utility Difference (specification, section 1.1).
 
-Utilities of N players against K swarms are an array of shape (N, K): row i, column m has u_i^m. Swarms are
-counted from 0 here, as everywhere inside.
+Utilities of N players against K swarms are an array u of shape (N, K) with u_i^m in row i, column m. Swarms
+are counted from 0.
 """
 
 from collections.abc import Sequence
@@ -17,11 +17,11 @@ _Utility = TypeVar("_Utility", int, float)
 _Numbers = TypeVar("_Numbers", float, Floats)
 
 _TOLERANCE = 1e-9
-"""Utilities that differ by less than this part of the largest of them are equal."""
+"""Relative tolerance for the equality of utilities."""
 
 
 def opponents_utility(u: _Numbers) -> _Numbers:
-    """Return u_j^k = −u_i^m of the other player of an interaction between two swarms (Eq. 3.1)."""
+    """Return u_j^k = −u_i^m, the utility of the opponent in an interaction between swarms (Eq. 3.1)."""
     return -u
 
 
@@ -38,7 +38,7 @@ def utility_between(u: ArrayLike, swarm_of: Sequence[int]) -> Floats:
     Returns
     -------
     ndarray of float64, shape (K, K)
-        Row k, column m: what swarm k has from its interactions with swarm m.
+        Row k, column m: utility of swarm k from its interactions with swarm m.
     """
     u = np.asarray(u, dtype=float)
     between = np.zeros((u.shape[1], u.shape[1]))
@@ -47,12 +47,9 @@ def utility_between(u: ArrayLike, swarm_of: Sequence[int]) -> Floats:
 
 
 def is_zero_sum_between(u: ArrayLike, swarm_of: Sequence[int]) -> bool:
-    """Tell whether each two swarms' utilities from each other cancel, as they must (Eq. 3.2).
+    """Return whether the utilities of each two swarms from each other sum to zero (Eq. 3.2).
 
-    Parameters
-    ----------
-    u, swarm_of
-        As in `utility_between`.
+    Parameters are those of `utility_between`.
     """
     between = utility_between(u, swarm_of)
     off = ~np.eye(len(between), dtype=bool)
@@ -61,17 +58,7 @@ def is_zero_sum_between(u: ArrayLike, swarm_of: Sequence[int]) -> bool:
 
 
 def player_utilities(u: ArrayLike) -> Floats:
-    """Return U_i = Σ_m u_i^m of each player (Eq. 3.3).
-
-    Parameters
-    ----------
-    u : array_like of float, shape (N, K)
-        u_i^m.
-
-    Returns
-    -------
-    ndarray of float64, shape (N,)
-    """
+    """Return U_i = Σ_m u_i^m of each player (Eq. 3.3), shape (N,)."""
     utilities: Floats = np.asarray(u, dtype=float).sum(axis=1)
     return utilities
 
@@ -103,7 +90,7 @@ def swarm_utility_difference(utilities: Sequence[_Utility], swarm: int) -> _Util
     Parameters
     ----------
     utilities : sequence of int or of float, length K
-        U_Sk of every swarm; pucks, seconds or whatever utility is measured in.
+        U_Sk of every swarm, in pucks, seconds or another unit.
     swarm : int
         k, from 0.
 
@@ -116,7 +103,7 @@ def swarm_utility_difference(utilities: Sequence[_Utility], swarm: int) -> _Util
 
 
 def sum_of_differences(utilities: Sequence[_Utility]) -> _Utility:
-    """Return Σ_k SUD_k = (2 − K) · Σ_k U_Sk, without a difference being formed (Eq. 3.8).
+    """Return Σ_k SUD_k = (2 − K) · Σ_k U_Sk (Eq. 3.8).
 
     Examples
     --------
@@ -127,10 +114,10 @@ def sum_of_differences(utilities: Sequence[_Utility]) -> _Utility:
 
 
 def is_zero_sum_difference(utilities: ArrayLike) -> bool:
-    """Tell whether the differences SUD_k sum to zero in every outcome (Thm 5, Cor. 6).
+    """Return whether the differences SUD_k sum to zero in every outcome (Thm 5, Cor. 6).
 
-    With two swarms they do whatever the utilities (Cor. 6); with another number of swarms only if the
-    utilities themselves sum to zero, so in general not (Thm 5).
+    This is always so with two swarms (Cor. 6). With another number of swarms it is so only if the utilities
+    sum to zero (Thm 5).
 
     Parameters
     ----------
@@ -154,7 +141,7 @@ def dummy_utility(utilities: ArrayLike) -> float:
     Raises
     ------
     InputError
-        If the outcomes have different sums: then no constant closes them.
+        If the outcomes have different sums, so the game is not constant-sum.
 
     Examples
     --------

@@ -1,6 +1,6 @@
-"""Time as utility: β T(p) is gained, α T(a) is lost (specification, section 1.3; 1.6 for the errata).
+"""Time as utility: gain β T(p), loss α T(a) (specification, section 1.3; errata in section 1.6).
 
-Times are in seconds, weights are positive numbers, so utilities are in weighted seconds.
+Times are in seconds and weights positive, so utilities are in weighted seconds.
 """
 
 from collections.abc import Sequence
@@ -12,15 +12,7 @@ _Time = TypeVar("_Time", bound=Any)
 
 
 class Interaction(NamedTuple):
-    """What one robot spends in an interaction, and how it weighs it.
-
-    Attributes
-    ----------
-    t_a, t_p : float
-        T(a) and T(p) (s).
-    alpha, beta : float
-        α weighs T(a), β weighs T(p).
-    """
+    """Times of one robot in an interaction, T(a) and T(p) (s), and their weights α and β."""
 
     t_a: float
     t_p: float
@@ -29,7 +21,7 @@ class Interaction(NamedTuple):
 
 
 def _mean(values: Sequence[float]) -> float:
-    # Every mean here is multiplied by the number of its values: over nobody it may be anything finite.
+    # Each mean is multiplied by its number of values, so the mean of none may be any finite number.
     return sum(values) / len(values) if values else 0.0
 
 
@@ -41,19 +33,19 @@ def share_of_time(part: _Time, t_a: _Time, t_p: _Time) -> _Time:
 
 
 def time_utility(t_a: float, t_p: float, alpha: float, beta: float) -> float:
-    """Return u = β_i T(p_i) − α_i T(a_i), met one of the own swarm (Eq. 4.1)."""
+    """Return u = β_i T(p_i) − α_i T(a_i), for meeting one robot of the own swarm (Eq. 4.1)."""
     return beta * t_p - alpha * t_a
 
 
 def intra_utility(n_k: float, t_a: float, t_p: float, alpha: float, beta: float) -> float:
-    """Return u = n_k (β_i T(p_i) − α_i T(a_i)), met `n_k` of the own swarm (Eq. 4.2)."""
+    """Return u = n_k (β_i T(p_i) − α_i T(a_i)), for meeting `n_k` robots of the own swarm (Eq. 4.2)."""
     return n_k * time_utility(t_a, t_p, alpha, beta)
 
 
 def pair_utility(own: Interaction, other: Interaction) -> float:
-    """Return u = (β_i T(p_i) − α_i T(a_i)) − (β_j T(p_j) − α_j T(a_j)), met one opponent (Eq. 4.3).
+    """Return u = (β_i T(p_i) − α_i T(a_i)) − (β_j T(p_j) − α_j T(a_j)), for one opponent (Eq. 4.3).
 
-    The opponent's is the opposite (Lemma 17).
+    The opponent's utility is −u (Lemma 17).
     """
     return time_utility(*own) - time_utility(*other)
 
@@ -61,14 +53,14 @@ def pair_utility(own: Interaction, other: Interaction) -> float:
 def inter_utility(own: Interaction, opponents: Sequence[Interaction]) -> float:
     """Return u = n_m (β_i T(p_i) − mean[βT(p)]) − n_m (α_i T(a_i) − mean[αT(a)]) (Eqs. 4.5, 4.6).
 
-    Over all robots of two swarms that meet each other it sums to zero (Lemma 19).
+    The sum over all robots of two swarms that meet each other is zero (Lemma 19).
 
     Parameters
     ----------
     own : Interaction
-        Of robot i.
+        Robot i.
     opponents : sequence of Interaction, length n_m
-        Of those it met of one other swarm.
+        The robots of one other swarm that it met.
     """
     n_m = len(opponents)
     program = own.beta * own.t_p - _mean([j.beta * j.t_p for j in opponents])
@@ -77,44 +69,38 @@ def inter_utility(own: Interaction, opponents: Sequence[Interaction]) -> float:
 
 
 def mixed_utility(own: Interaction, n_k: int, *opponents: Sequence[Interaction]) -> float:
-    """Return U_i = u_i^k + Σ_{m≠k} u_i^m, met robots of several swarms at once (Eq. 4.7, Props. 20, 21).
+    """Return U_i = u_i^k + Σ_{m≠k} u_i^m, for meeting several swarms at once (Eq. 4.7, Props. 20, 21).
 
     Parameters
     ----------
     own : Interaction
-        Of robot i.
+        Robot i.
     n_k : int
-        How many of its own swarm it met.
+        Number of robots met of its own swarm.
     *opponents : sequence of Interaction
-        Of those it met of each other swarm: one sequence is Prop. 20, several are Prop. 21.
+        The robots met of each other swarm: one sequence in Prop. 20, several in Prop. 21.
     """
     return intra_utility(n_k, *own) + sum(inter_utility(own, swarm) for swarm in opponents)
 
 
 def absent_to_one(other: Interaction) -> float:
-    """Return ε̃_j = β_j (T(p_j) + T(a_j)): without robot i, all of j's time were program (Eq. 4.9)."""
+    """Return ε̃_j = β_j (T(p_j) + T(a_j)): without robot i, all of j's time is program time (Eq. 4.9)."""
     return other.beta * (other.t_p + other.t_a)
 
 
 def absent_to_swarm(others: Sequence[Interaction]) -> float:
-    """Return ε̃_S = n mean[βT(p)] + n mean[βT(a)], of those that robot i met (Eqs. 4.10, 4.11).
+    """Return ε̃_S = n mean[βT(p)] + n mean[βT(a)] over the robots that robot i met (Eqs. 4.10, 4.11).
 
-    Parameters
-    ----------
-    others : sequence of Interaction, length n
-        Of those it met of one swarm; the own in Eq. 4.10, the opponents' in Eq. 4.11.
+    `others` are those of its own swarm in Eq. 4.10 and the opponents in Eq. 4.11.
     """
     n = len(others)
     return n * _mean([j.beta * j.t_p for j in others]) + n * _mean([j.beta * j.t_a for j in others])
 
 
 def present_to_own_swarm(mates: Sequence[Interaction]) -> float:
-    """Return ε_k = n_k (mean[βT(p)] − mean[αT(a)]), what its own swarm gets from robot i (Eqs. 4.12, 4.13).
+    """Return ε_k = n_k (mean[βT(p)] − mean[αT(a)]), the own swarm's utility from robot i (Eqs. 4.12, 4.13).
 
-    Parameters
-    ----------
-    mates : sequence of Interaction, length n_k
-        Of those it met of its own swarm.
+    `mates` are the robots of its own swarm that it met.
     """
     return len(mates) * (_mean([j.beta * j.t_p for j in mates]) - _mean([j.alpha * j.t_a for j in mates]))
 
@@ -122,20 +108,18 @@ def present_to_own_swarm(mates: Sequence[Interaction]) -> float:
 def approximate_wlu(
     own: Interaction, mates: Sequence[Interaction], opponents: Sequence[Interaction]
 ) -> float:
-    """Return W_i by the times measured in its presence, with the printed sign corrected (Eq. 4.14).
+    """Return W_i from times measured in the presence of i, with a corrected sign (Eq. 4.14).
 
     W_i = (n_k + 2 n_m) β_i T(p_i) − (n_k + 2 n_m) α_i T(a_i) − n_k (mean_k[αT(a)] + mean_k[βT(a)])
-    + n_m (2 mean_m[αT(a)] + mean_m[βT(a)] − mean_m[βT(p)]). The last term is printed with a minus; Thm 13
-    with Eqs. 4.2, 4.5 and 4.10 to 4.13 put in gives a plus.
+    + n_m (2 mean_m[αT(a)] + mean_m[βT(a)] − mean_m[βT(p)]). The source has a minus
+    before the last term; inserting Eqs. 4.2, 4.5 and 4.10 to 4.13 into Thm 13 gives a plus.
 
     Parameters
     ----------
     own : Interaction
-        Of robot i.
-    mates : sequence of Interaction, length n_k
-        Of those it met of its own swarm.
-    opponents : sequence of Interaction, length n_m
-        Of those it met of other swarms, all together.
+        Robot i.
+    mates, opponents : sequence of Interaction, lengths n_k and n_m
+        The robots that it met of its own swarm and of all other swarms.
     """
     n_k, n_m = len(mates), len(opponents)
     weight = n_k + 2 * n_m
@@ -149,16 +133,16 @@ def approximate_wlu(
 
 
 class Crowd(NamedTuple):
-    """Whom robot i met, and how all weigh their time.
+    """Numbers and weights of the robots that robot i met.
 
     Attributes
     ----------
     n_k, n_m : int
-        How many of its own swarm and of others.
+        Number of robots of its own swarm and of others.
     alpha_i, beta_i : float
-        Its own weights.
+        Weights of robot i.
     alpha_k, beta_k, alpha_m, beta_m : float
-        Means of the weights of those it met.
+        Mean weights of the robots met.
     """
 
     n_k: int
@@ -172,7 +156,7 @@ class Crowd(NamedTuple):
 
 
 def gamma(crowd: Crowd) -> float:
-    """Return Γ = (n_k + 2 n_m) β_i − n_m β̄_m, by which T(p) counts (Eqs. 5.1, 5.3)."""
+    """Return Γ = (n_k + 2 n_m) β_i − n_m β̄_m, the weight of T(p) (Eqs. 5.1, 5.3)."""
     return (crowd.n_k + 2 * crowd.n_m) * crowd.beta_i - crowd.n_m * crowd.beta_m
 
 
@@ -184,7 +168,7 @@ def delta(crowd: Crowd) -> float:
 
 
 def wlu_of_equal_times(crowd: Crowd, t_a: float, t_p: float) -> float:
-    """Return W_i = Γ T(p) + Δ T(a), where all spend the same time: Eq. 4.14 with it (Eq. 5.1)."""
+    """Return W_i = Γ T(p) + Δ T(a), Eq. 4.14 for equal times of all robots (Eq. 5.1)."""
     return gamma(crowd) * t_p + delta(crowd) * t_a
 
 

@@ -1,1 +1,1 @@
-"""Code of users: how a text names a class with arguments, and how its file is loaded."""
+"""User-defined code: syntax of references and loading of classes."""

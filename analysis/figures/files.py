@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from kswarms.agents.common.atomic_files import whole
+from kswarms.agents.common.atomic_files import atomic_path
 from kswarms.agents.common.errors import InputError
 
 DOTS_PER_INCH: Final = 150
@@ -101,7 +101,7 @@ def write_file(path: Path, content: bytes, field: str) -> None:
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with whole(path) as file:
+        with atomic_path(path) as file:
             file.write_bytes(content)
     except OSError as error:
         raise InputError(field, str(path), f"must be a writable file ({error.strerror or error})") from error

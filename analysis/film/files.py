@@ -10,7 +10,7 @@ from typing import Final
 
 from PIL import Image
 
-from kswarms.agents.common.atomic_files import whole
+from kswarms.agents.common.atomic_files import atomic_path
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.film.painter import palette
 
@@ -127,7 +127,7 @@ def _write_gif(path: Path, images: Iterator[Image.Image], fps: int) -> int:
 def _temporary(path: Path) -> Iterator[Path]:
     """Yield a temporary path; on success it replaces `path`."""
     try:
-        with whole(path) as file:
+        with atomic_path(path) as file:
             yield file
     except OSError as error:
         raise InputError("out", str(path), f"must be a writable file ({error.strerror})") from error

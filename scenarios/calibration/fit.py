@@ -18,7 +18,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from kswarms.agents.common.arrays import Floats
-from kswarms.agents.common.atomic_files import remove_unfinished
+from kswarms.agents.common.atomic_files import remove_temporary_files
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.statistics.intervals import bootstrap_interval
@@ -187,7 +187,7 @@ def _open(setup: Setup, play: Play, out: Path, fresh: bool) -> Shares:
             for name in (_SHARES, TRACE):
                 (out / name).unlink(missing_ok=True)
         shares = Shares(out / _SHARES, comparable, play)
-        remove_unfinished(out)
+        remove_temporary_files(out)
         shares.save()
     except OSError as error:
         raise InputError("out", str(out), f"must be a writable directory ({error.strerror})") from error

@@ -8,7 +8,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
-from kswarms.agents.common.atomic_files import remove_unfinished, whole
+from kswarms.agents.common.atomic_files import atomic_path, remove_temporary_files
 from kswarms.agents.common.columns import TABLES
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.study.directory import make_directory
@@ -36,7 +36,7 @@ def prepare_table(directory: Path) -> None:
         valid = False
     if not valid:
         raise InputError("out", str(directory), f"holds a {FILE} that is no table of kswarms")
-    remove_unfinished(directory)
+    remove_temporary_files(directory)
 
 
 def write_table(directory: Path, rows: Sequence[dict[str, Any]]) -> Path:
@@ -68,7 +68,7 @@ def write_table(directory: Path, rows: Sequence[dict[str, Any]]) -> Path:
             replaced = pc.and_(replaced, pc.equal(earlier[name], rows[0][name]))
         table = pa.concat_tables([earlier.filter(pc.invert(replaced)), table])
     table = table.sort_by([(name, "ascending") for name in (*_KEY, "seed", "robot")])
-    with whole(path) as file:
+    with atomic_path(path) as file:
         pq.write_table(table, file)
     return path
 

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from tempfile import TemporaryFile
 
-from kswarms.agents.common.atomic_files import whole
+from kswarms.agents.common.atomic_files import atomic_path
 from kswarms.agents.common.errors import InputError
 
 
@@ -32,5 +32,5 @@ def write_json(path: Path, content: object) -> None:
     OSError
         If writing fails; an existing file is then unchanged.
     """
-    with whole(path) as file:
+    with atomic_path(path) as file:
         file.write_text(json.dumps(content, indent=1) + "\n")

@@ -18,7 +18,7 @@ from types import TracebackType
 from typing import Any, Final, Self
 
 from kswarms import __version__
-from kswarms.agents.common.atomic_files import UNFINISHED, remove_unfinished
+from kswarms.agents.common.atomic_files import TEMPORARY, remove_temporary_files
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.runs.outcome import Outcome, Result
@@ -34,7 +34,7 @@ from kswarms.scenarios.study.summary import runs_by_code
 MANIFEST: Final = "manifest.json"
 """Name of the file that describes the origin of the results."""
 
-_TEMPORARY_TABLES: Final = f"{UNFINISHED}tables-"
+_TEMPORARY_TABLES: Final = f"{TEMPORARY}tables-"
 """Prefix of the temporary directory of the tables."""
 
 _ENTROPY: Final = "numpy PCG64(SeedSequence(seed, spawn_key=(robot, purpose))), and nothing else"
@@ -79,7 +79,7 @@ class Study:
             stack.enter_context(directory_lock(self.directory, self._command))
             for path in self.directory.glob(f"{_TEMPORARY_TABLES}*"):
                 shutil.rmtree(path, ignore_errors=True)
-            remove_unfinished(self.directory)
+            remove_temporary_files(self.directory)
             self._ledger = stack.enter_context(Ledger(self.directory / LEDGER_FILE, new=True))
             self._resources = stack.pop_all()
         return self

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import pytest
 
-from kswarms.agents.common.atomic_files import remove_unfinished, whole
+from kswarms.agents.common.atomic_files import atomic_path, remove_temporary_files
 
 
 def test_a_file_takes_the_place_of_another_once_it_is_whole(tmp_path: Path) -> None:
     path = tmp_path / "film.gif"
     path.write_text("before")
-    with whole(path) as file:
+    with atomic_path(path) as file:
         assert (file.parent, file.suffix) == (tmp_path, ".gif")
         file.write_text("after")
         assert path.read_text() == "before"
@@ -24,7 +24,7 @@ def test_what_is_not_finished_leaves_all_as_it_was(tmp_path: Path) -> None:
     path.write_text("before")
 
     def write() -> None:
-        with whole(path) as file:
+        with atomic_path(path) as file:
             file.write_text("aft")
             raise OSError("disk full")
 
@@ -40,7 +40,7 @@ def test_what_killed_processes_left_is_removed_and_nothing_else(tmp_path: Path) 
     of_others = [*living, ".unfinished-tables-1", "1-film.gif"]
     for name in (*left, *of_others):
         (tmp_path / name).write_text("half a f")
-    remove_unfinished(tmp_path)
+    remove_temporary_files(tmp_path)
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(of_others)
 
 
@@ -53,5 +53,5 @@ def test_what_a_process_of_another_user_writes_is_left_alone(
     monkeypatch.setattr(os, "kill", refuse)
     unfinished = tmp_path / ".unfinished-5-film.gif"
     unfinished.touch()
-    remove_unfinished(tmp_path)
+    remove_temporary_files(tmp_path)
     assert unfinished.exists()
