@@ -1,8 +1,7 @@
 """Compilation of functions with numba, with a cache on disk.
 
-Numba recompiles a cached function when its source file changes, but not when a function that it calls changes
-in another file. Therefore cached code that is older than any source of the packages with kernels is deleted on
-import.
+Numba recompiles a cached function when its source file changes, but not when a called function changes in
+another file. Cached code that is older than any source of agents and model is therefore deleted on import.
 """
 
 import contextlib
@@ -19,8 +18,8 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 def compiled(function: _Function) -> _Function:
     """Compile a function of numbers and arrays with numba and cache the machine code.
 
-    Division by zero gives infinities and NaN as in numpy. Compiled functions must not allocate arrays: numba's
-    reference counting is off, which saves a tenth of a game's time.
+    Division by zero gives infinities and NaN as in numpy. Compiled functions must not allocate arrays, since
+    numba's reference counting is off, which saves a tenth of a game's time.
     """
     compile_it = njit(cache=True, error_model="numpy", _nrt=False)(function)  # type: ignore[call-overload]  # not in its stubs
     _delete_stale_code(Path(compile_it._cache.cache_path))
