@@ -27,7 +27,7 @@ _NUMBER: Final = re.compile(r"^(–$|[+−-]?[\d.]+(\s|$))")
 
 
 @dataclass(frozen=True)
-class PrintedTable:
+class TextTable:
     """A table of strings.
 
     Attributes

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from kswarms.analysis.text_tables import PrintedTable, span
+from kswarms.analysis.text_tables import TextTable, span
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ def _absent(planned: Iterable[object], found: pd.Series) -> str:
     return ", ".join(str(value) for value in planned if value not in present)
 
 
-def coverage_table(frame: pd.DataFrame) -> PrintedTable:
+def coverage_table(frame: pd.DataFrame) -> TextTable:
     """Return the result of `coverage` as a table of incomplete scenarios; the caption has the other ones."""
     absent = frame[frame["games"] == 0]["scenario"]
     partial = frame[(frame["games"] > 0) & (frame["missing"] != "")]
@@ -90,4 +90,4 @@ def coverage_table(frame: pd.DataFrame) -> PrintedTable:
     if len(absent):
         caption += f"; not played: {', '.join(absent)}"
     rows = partial[["scenario", "games", "planned", "missing"]].astype(str).to_numpy().tolist()
-    return PrintedTable(["scenario", "games", "of", "missing"], rows, f"{caption}.")
+    return TextTable(["scenario", "games", "of", "missing"], rows, f"{caption}.")

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.figures.files import EncodedFigure, encode_all, write_file
-from kswarms.analysis.text_tables import TEMPLATES, PrintedTable
+from kswarms.analysis.text_tables import TEMPLATES, TextTable
 
 _MIME: Final = {"png": "image/png", "svg": "image/svg+xml"}
 
@@ -64,7 +64,7 @@ class PageTable:
         Name of its files, without suffix.
     title : str
         Title.
-    table : PrintedTable
+    table : TextTable
         The table as shown.
     frame : pandas.DataFrame
         The numbers.
@@ -72,7 +72,7 @@ class PageTable:
 
     name: str
     title: str
-    table: PrintedTable
+    table: TextTable
     frame: pd.DataFrame
 
     @property
@@ -123,7 +123,7 @@ class Part:
         """Add a figure; see `PageFigure`."""
         self.figures.append(PageFigure(name, encode_all(figure), alt, caption))
 
-    def add_table(self, name: str, title: str, table: PrintedTable, frame: pd.DataFrame) -> None:
+    def add_table(self, name: str, title: str, table: TextTable, frame: pd.DataFrame) -> None:
         """Add a table; see `PageTable`."""
         self.tables.append(PageTable(name, title, table, frame))
 

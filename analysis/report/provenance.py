@@ -12,7 +12,7 @@ import pandas as pd
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.report.page import Part
 from kswarms.analysis.results.tables import count_rows
-from kswarms.analysis.text_tables import PrintedTable
+from kswarms.analysis.text_tables import TextTable
 
 MANIFEST_FILE: Final = "manifest.json"
 _LIBRARIES: Final = ("kswarms", "matplotlib", "networkx", "numpy", "pandas", "pyarrow", "scipy", "seaborn")
@@ -30,7 +30,7 @@ def provenance_parts(directory: Path) -> list[Part]:
     rows = [[each["file"], str(each["rows"]), str(each["bytes"]), each["sha256"][:16]] for each in described]
     files = Part("files", "Files")
     header = ["file", "rows", "bytes", "SHA-256, first 16 digits"]
-    table = PrintedTable(header, rows, "")
+    table = TextTable(header, rows, "")
     files.add_table("files", "Files of the results directory", table, pd.DataFrame(described))
     made_with = ", ".join(f"{name} {version(name)}" for name in _LIBRARIES)
     this = Part("made-with", "This report", [f"Made with {made_with}, Python {platform.python_version()}."])

@@ -13,7 +13,7 @@ from kswarms.analysis.film.painter import Places
 from kswarms.analysis.measures.networks import describe_network, jams, meeting_network
 from kswarms.analysis.report.page import Part
 from kswarms.analysis.results.records import read_conflicts, read_robots, recorded_runs
-from kswarms.analysis.text_tables import PrintedTable, number
+from kswarms.analysis.text_tables import TextTable, number
 
 MAX_GAMES: Final = 4
 """Maximum number of recorded games of a density that the report uses; more would show the same."""
@@ -144,7 +144,7 @@ def _network_part(directory: Path, condition: Recorded, game: pd.DataFrame, name
         [number(row[name], form) for name, (_, form) in _NETWORK_COLUMNS.items()]
         for row in frame.to_dict("records")
     ]
-    table = PrintedTable([header for header, _ in _NETWORK_COLUMNS.values()], cells, _NETWORK_CAPTION)
+    table = TextTable([header for header, _ in _NETWORK_COLUMNS.values()], cells, _NETWORK_CAPTION)
     part.add_table(part.id, f"Networks of {condition.name}", table, frame)
     return part
 

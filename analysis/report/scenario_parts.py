@@ -15,7 +15,7 @@ from kswarms.analysis.report.page import Part
 from kswarms.analysis.results.runs import Results
 from kswarms.analysis.tables import fidelity, scores
 from kswarms.analysis.tables import learned as tables
-from kswarms.analysis.text_tables import NONE, PrintedTable
+from kswarms.analysis.text_tables import NONE, TextTable
 
 ARGOS: Final = "argos-"
 """Prefix of the scenarios that were also played in ARGoS."""
@@ -130,7 +130,7 @@ def verdicts_part(verdicts: Sequence[Verdict]) -> Part:
             "undecided if the interval contains the bound, or if seeds or densities are missing.",
         ],
     )
-    table = PrintedTable(header, cells.astype(str).to_numpy().tolist(), "", marks)
+    table = TextTable(header, cells.astype(str).to_numpy().tolist(), "", marks)
     part.add_table("findings", "Findings and their verdicts", table, frame)
     return part
 

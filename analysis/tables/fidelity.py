@@ -13,7 +13,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.agents.theory.times import share_of_time
 from kswarms.analysis.results.published import argos_fixed_policies
 from kswarms.analysis.statistics.comparisons import compare_independent
-from kswarms.analysis.text_tables import NONE, PrintedTable, with_interval
+from kswarms.analysis.text_tables import NONE, TextTable, with_interval
 
 SHARE_TOLERANCE = 0.06
 SCORE_TOLERANCE = 0.2
@@ -89,7 +89,7 @@ def _compare(ours: pd.DataFrame, theirs: pd.DataFrame) -> dict[str, Any]:
     }
 
 
-def argos_table(frame: pd.DataFrame) -> PrintedTable:
+def argos_table(frame: pd.DataFrame) -> TextTable:
     """Print what `against_argos` returns, a line for each row."""
     header = [
         *("scenario", "N", "swarm", "pucks", "ARGoS", "difference (95 % interval)", "relative", "fits"),
@@ -115,7 +115,7 @@ def argos_table(frame: pd.DataFrame) -> PrintedTable:
                 _verdict(row["share_fits"]),
             ]
         )
-    return PrintedTable(header, rows, "")
+    return TextTable(header, rows, "")
 
 
 def markdown_table(frame: pd.DataFrame) -> str:

@@ -11,7 +11,7 @@ import pandas as pd
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.results.published import learned_percentages
 from kswarms.analysis.statistics.means import describe_seeds, with_intervals
-from kswarms.analysis.text_tables import PrintedTable, number, with_interval
+from kswarms.analysis.text_tables import TextTable, number, with_interval
 
 _COLUMN = ["scenario", "condition", "swarm", "opponent"]
 _CELL = [*_COLUMN, "n"]
@@ -77,7 +77,7 @@ def mean_absolute_error(cells: pd.DataFrame) -> float:
     return float(cells["error"].abs().mean())
 
 
-def learned_table(cells: pd.DataFrame) -> PrintedTable:
+def learned_table(cells: pd.DataFrame) -> TextTable:
     """Put cells into the form of the source's tables: a row for each N, a column for each curve.
 
     Parameters
@@ -87,7 +87,7 @@ def learned_table(cells: pd.DataFrame) -> PrintedTable:
 
     Returns
     -------
-    PrintedTable
+    TextTable
         Published and measured percentages side by side, measured alone where nothing was published; the
         caption gives the mean absolute errors. Columns are named by scenario, condition and what was
         learned, as far as these differ: in the source's tables one swarm learns, about one other.
@@ -103,7 +103,7 @@ def learned_table(cells: pd.DataFrame) -> PrintedTable:
         header.append(f"{name}\nmeasured")
         measured = zip(by_density["measured"], by_density["low"], by_density["high"], strict=True)
         columns.append([with_interval(*cell, ".1f") for cell in measured])
-    return PrintedTable(header, [list(row) for row in zip(*columns, strict=True)], _caption(cells, errors))
+    return TextTable(header, [list(row) for row in zip(*columns, strict=True)], _caption(cells, errors))
 
 
 def named_columns(cells: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:

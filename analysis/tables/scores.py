@@ -10,7 +10,7 @@ from kswarms.analysis.measures.quantities import (
     with_time_shares,
 )
 from kswarms.analysis.statistics.means import describe_seeds, mean_by_n
-from kswarms.analysis.text_tables import PrintedTable, with_interval
+from kswarms.analysis.text_tables import TextTable, with_interval
 
 _UNITS = {"pucks": "pucks deposited by the swarm", "sud": "SUD of S2 (pucks)"}
 
@@ -51,7 +51,7 @@ def scores(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)[["quantity", "curve", "n", "seeds", "mean", "low", "high"]]
 
 
-def scores_table(frame: pd.DataFrame) -> PrintedTable:
+def scores_table(frame: pd.DataFrame) -> TextTable:
     """Print what `scores` returns: a row for each N, a column for each curve and quantity."""
     densities = sorted(set(frame["n"]))
     several = frame["quantity"].nunique() > 1
@@ -64,4 +64,4 @@ def scores_table(frame: pd.DataFrame) -> PrintedTable:
         columns.append([with_interval(*cell, form) for cell in cells])
     unit = "share of time in conflict" if several else _UNITS[frame["quantity"].iloc[0]]
     seeds = describe_seeds(frame["seeds"].min(), frame["seeds"].max())
-    return PrintedTable(header, [list(row) for row in zip(*columns, strict=True)], f"{unit}; {seeds}")
+    return TextTable(header, [list(row) for row in zip(*columns, strict=True)], f"{unit}; {seeds}")

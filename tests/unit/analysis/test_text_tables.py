@@ -1,8 +1,8 @@
 """Text tables in Markdown and HTML."""
 
-from kswarms.analysis.text_tables import PrintedTable
+from kswarms.analysis.text_tables import TextTable
 
-TABLE = PrintedTable(
+TABLE = TextTable(
     ["N", "S1\npucks", "fits", "a|b"],
     [["6", "1.0 (0.5 … 1.5)", "yes", "<b>"], ["10", "–", "no", "x|y"]],
     "two\nlines & more",
@@ -37,11 +37,11 @@ def test_html_has_headings_of_columns_and_rows_and_escapes_all_text() -> None:
 
 
 def test_a_table_without_rows_or_caption() -> None:
-    empty = PrintedTable(["a", "b"], [], "")
+    empty = TextTable(["a", "b"], [], "")
     assert empty.to_markdown() == "| a | b |\n|---|---|\n"
     assert "<caption>" not in empty.to_html()
 
 
 def test_words_and_dates_are_not_numbers() -> None:
     rows = [["-1.5", "+3 %", "6.1a-alike", "5 of 6"], ["−2", "–", "6.1b", "7 of 8"]]
-    assert PrintedTable(list("abcd"), rows, "").classes() == ["number", "number", "", "number"]
+    assert TextTable(list("abcd"), rows, "").classes() == ["number", "number", "", "number"]

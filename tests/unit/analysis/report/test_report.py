@@ -15,7 +15,7 @@ from kswarms.analysis.report.page import Chapter, Part, Report
 from kswarms.analysis.report.provenance import provenance_parts
 from kswarms.analysis.report.record_parts import conflict_parts, recorded_conditions
 from kswarms.analysis.report.scenario_parts import argos_parts, verdicts_part
-from kswarms.analysis.text_tables import PrintedTable
+from kswarms.analysis.text_tables import TextTable
 from kswarms.model.description.arena import Arena, build_arena
 from tests.helpers.html_page import Page
 from tests.helpers.result_rows import MET, runs_of
@@ -61,7 +61,7 @@ def a_report() -> Report:
     drawing = Figure(figsize=(9, 2))
     drawing.subplots()
     part.add_figure("curve", drawing, 'alt "quoted"', "caption")
-    table = PrintedTable(["N", "x"], [["6", "1.0"]], "below")
+    table = TextTable(["N", "x"], [["6", "1.0"]], "below")
     part.add_table("numbers", "Numbers", table, pd.DataFrame({"N": [6], "x": [1.25]}))
     return Report(
         "A title",
