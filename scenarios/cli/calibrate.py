@@ -10,7 +10,7 @@ import typer
 
 from kswarms.scenarios.calibration import fit
 from kswarms.scenarios.catalogue.selecting import integers, words
-from kswarms.scenarios.cli.options import Jobs, count_workers, parse_directory
+from kswarms.scenarios.cli.options import CPUS, Jobs, parse_directory
 from kswarms.scenarios.cli.progress import track
 from kswarms.scenarios.runs.run import Run
 
@@ -37,7 +37,7 @@ def calibrate(
     validation_seeds: Annotated[
         int, typer.Option(help="Games for each cell in the validation, at least 6.")
     ] = 20,
-    jobs: Jobs = None,
+    jobs: Jobs = CPUS,
     out: Annotated[
         Path,
         typer.Option(
@@ -58,7 +58,6 @@ def calibrate(
     if densities is not None:
         options["densities"] = integers("densities", densities)
     setup = fit.Setup(**options, validation_seeds=validation_seeds)
-    workers = count_workers(jobs)
     table = table_6_1()
     target = {
         (opponent, int(n)): float(percent)
@@ -66,7 +65,7 @@ def calibrate(
         for n, percent in zip(table["n"], table[column], strict=True)
     }
     trace = fit.calibrate(
-        setup, target, partial(_play, workers), out, fresh, report=partial(typer.echo, err=True)
+        setup, target, partial(_play, jobs), out, fresh, report=partial(typer.echo, err=True)
     )
     for line in fit.summary(trace):
         typer.echo(line)

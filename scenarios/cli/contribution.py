@@ -11,13 +11,7 @@ import typer
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.limits import MOST_SEEDS
 from kswarms.scenarios.catalogue.selecting import chosen
-from kswarms.scenarios.cli.options import (
-    Jobs,
-    check_seed,
-    complete_scenario_ids,
-    count_workers,
-    parse_directory,
-)
+from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, complete_scenario_ids, parse_directory
 from kswarms.scenarios.cli.printing import print_table
 from kswarms.scenarios.cli.progress import track
 from kswarms.scenarios.runs.outcome import Outcome
@@ -43,14 +37,17 @@ def contribution(
         typer.Option(metavar="LIST", help="Robots, from 0, and swarms: 3,7 or S2. [default: all]"),
     ] = None,
     seeds: Annotated[
-        int, typer.Option(help="Games with all robots, at least 1; each is also played without each robot.")
+        int,
+        typer.Option(
+            min=1, max=MOST_SEEDS, help="Games with all robots; each is also played without each robot."
+        ),
     ] = 20,
-    first_seed: Annotated[int, typer.Option(help="First seed, at least 0.")] = 0,
+    first_seed: FirstSeed = 0,
     absent_from: Annotated[
         Literal["learning", "game"],
         typer.Option(help="Absent from the learning and the game, or from the measured game only."),
     ] = "learning",
-    jobs: Jobs = None,
+    jobs: Jobs = CPUS,
     out: Annotated[
         Path, typer.Option(parser=parse_directory, metavar="DIR", help="Results directory.")
     ] = Path("results"),
@@ -68,11 +65,6 @@ def contribution(
         raise InputError("condition", condition, f"must be one of {', '.join(map(repr, names))}")
     name = names[0] if condition is None else condition
     game = scenario.game(name, n)
-    if not 1 <= seeds <= MOST_SEEDS:
-        raise InputError("seeds", seeds, f"must be at least 1, at most {MOST_SEEDS}")
-    check_seed("first_seed", first_seed)
-    workers = count_workers(jobs)
-
     from kswarms.analysis.figures.contribution import write_contribution_figure
     from kswarms.analysis.measures.contribution import of_question, time_sud
     from kswarms.analysis.results.records import read_contributions
@@ -88,7 +80,7 @@ def contribution(
         range(first_seed, first_seed + seeds),
         absent_from,
         label=(scenario.id, name),
-        play=partial(_play, workers),
+        play=partial(_play, jobs),
         time_sud=time_sud,
     )
     typer.echo(f"table:  {write_table(out, found)}")

@@ -12,7 +12,7 @@ from kswarms.scenarios.cli.options import RunDigest, Watched, resolve_source
 def explore(
     what: Watched = None,
     run: RunDigest = "",
-    port: Annotated[int, typer.Option(help="Port, 1 to 65535; 0 for any free port.")] = 8765,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 for any free port.")] = 8765,
     no_browser: Annotated[
         bool, typer.Option("--no-browser", help="Print the address only; do not open a browser.")
     ] = False,

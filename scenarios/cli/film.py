@@ -33,11 +33,11 @@ def film(
         float | None, typer.Option("--to", help="Last instant (s). [default: the end of the game]")
     ] = None,
     speed: Annotated[float, typer.Option(help="Seconds of the game per second of film, above 0.")] = 10.0,
-    fps: Annotated[int, typer.Option(help="Frames per second, 1 to 60.")] = 20,
-    size: Annotated[int, typer.Option(help="Width of a frame (pixels), 64 to 4096.")] = 720,
+    fps: Annotated[int, typer.Option(min=1, max=60, help="Frames per second.")] = 20,
+    size: Annotated[int, typer.Option(min=64, max=4096, help="Width of a frame (pixels).")] = 720,
     sheet: Annotated[
         int | None,
-        typer.Option(metavar="K", help="Write a contact sheet (PNG) of K instants, 1 to 100, instead."),
+        typer.Option(metavar="K", min=1, max=100, help="Write a contact sheet (PNG) of K instants instead."),
     ] = None,
     out: Annotated[
         Path | None,
@@ -54,9 +54,6 @@ def film(
     _check("from", begin, first <= begin < length, f"must be at least {first}, below {length}")
     _check("to", end, begin < end <= length, f"must be greater than {begin}, and at most {length}")
     _check("speed", speed, 0 < speed < math.inf, "must be greater than 0")
-    _check("fps", fps, 1 <= fps <= 60, "must be in 1 to 60")
-    _check("size", size, 64 <= size <= 4096, "must be in 64 to 4096")
-    _check("sheet", sheet, sheet is None or 1 <= sheet <= 100, "must be in 1 to 100")
     out = out or Path(_file_name(found) + (".mp4" if sheet is None else ".png"))
     if sheet is None:
         check_film(out)

@@ -2,7 +2,7 @@
 
 import os
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Final
 
 import typer
 
@@ -12,22 +12,11 @@ from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selecting import FIRST_SCENARIO, USUAL_N, chosen
 from kswarms.scenarios.runs.run import Run, digest
 
-Jobs = Annotated[int | None, typer.Option(help="Worker processes, at least 1. [default: one for each CPU]")]
-
-
-def count_workers(jobs: int | None) -> int:
-    """Return the number of worker processes, by default one for each CPU.
-
-    Raises
-    ------
-    InputError
-        If the number is out of range.
-    """
-    if jobs is None:
-        return os.cpu_count() or 1
-    if not 1 <= jobs <= MOST_JOBS:
-        raise InputError("jobs", jobs, f"must be at least 1, at most {MOST_JOBS}")
-    return jobs
+CPUS: Final = os.cpu_count() or 1
+Jobs = Annotated[
+    int, typer.Option(min=1, max=MOST_JOBS, show_default="one for each CPU", help="Worker processes.")
+]
+FirstSeed = Annotated[int, typer.Option(min=0, max=LAST_SEED, help="First seed.")]
 
 
 def complete_ids(incomplete: str) -> list[tuple[str, str]]:
@@ -79,19 +68,9 @@ Robots = Annotated[
     int | None,
     typer.Option("--n", help="Robots in all; the shares of the swarms must divide it. [default: near 20]"),
 ]
-Seed = Annotated[int | None, typer.Option("--seed", help="Seed of the game, at least 0. [default: 0]")]
-
-
-def check_seed(field: str, seed: int) -> None:
-    """Validate a seed.
-
-    Raises
-    ------
-    InputError
-        If it is out of range.
-    """
-    if not 0 <= seed <= LAST_SEED:
-        raise InputError(field, seed, f"must be at least 0, at most {LAST_SEED}")
+Seed = Annotated[
+    int | None, typer.Option("--seed", min=0, max=LAST_SEED, help="Seed of the game. [default: 0]")
+]
 
 
 def resolve_source(what: str | None, run: str) -> str | Run:
@@ -129,6 +108,5 @@ def resolve_run(what: str | None, run: str, condition: str | None, n: int | None
     name = found.conditions[0].name if condition is None else condition
     if n is None:
         n = min(found.densities, key=lambda density: abs(density - USUAL_N))
-    check_seed("seed", seed or 0)
-    game = found.game(name, n)
-    return Run(digest(game, seed or 0), game, seed or 0, ((found.id, name),))
+    game, seed = found.game(name, n), seed or 0
+    return Run(digest(game, seed), game, seed, ((found.id, name),))

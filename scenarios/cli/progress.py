@@ -4,16 +4,15 @@ import json
 import sys
 import time
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Final, TypeVar
+from typing import Final, Literal, TypeVar
 
 import typer
 
-from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.cli.printing import format_duration
 from kswarms.scenarios.runs.outcome import Failure, Result
 from kswarms.scenarios.runs.run import Run
 
-KINDS: Final = ("bar", "json", "none")
+Kind = Literal["bar", "json", "none"]
 
 _Step = TypeVar("_Step")
 
@@ -56,7 +55,7 @@ class Count:
         return passed * rest / self.worked if self.worked > 0 else float("inf")
 
 
-def show_progress(played: Iterable[Result], runs: Sequence[Run], kind: str) -> Iterator[Count]:
+def show_progress(played: Iterable[Result], runs: Sequence[Run], kind: Kind) -> Iterator[Count]:
     """Show the progress of a sweep on standard error; yield the count after each run.
 
     Parameters
@@ -65,24 +64,12 @@ def show_progress(played: Iterable[Result], runs: Sequence[Run], kind: str) -> I
         Runs as they finish.
     runs : sequence of Run
         All runs of the sweep.
-    kind : str
-        One of `KINDS`; without runs nothing is shown.
+    kind : {'bar', 'json', 'none'}
+        How; nothing is shown without runs.
     """
     count = Count(runs)
     show = {"bar": _bar, "json": _lines, "none": _nothing}[kind if runs else "none"]
     return show(_counted(played, count), count)
-
-
-def check_kind(kind: str) -> None:
-    """Validate a kind of progress.
-
-    Raises
-    ------
-    InputError
-        If it is not one of `KINDS`.
-    """
-    if kind not in KINDS:
-        raise InputError("progress", kind, f"must be one of {', '.join(KINDS)}")
 
 
 def _counted(played: Iterable[Result], count: Count) -> Iterator[Run]:

@@ -12,9 +12,9 @@ from kswarms.agents.common.columns import RECORDED_TABLES
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selecting import chosen, integers, planned, words
-from kswarms.scenarios.cli.options import Jobs, check_seed, complete_ids, count_workers, parse_directory
+from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, complete_ids, parse_directory
 from kswarms.scenarios.cli.printing import print_table
-from kswarms.scenarios.cli.progress import KINDS, check_kind, show_progress
+from kswarms.scenarios.cli.progress import Kind, show_progress
 from kswarms.scenarios.description.scenario import Scenario
 
 
@@ -39,10 +39,10 @@ def run(
         ),
     ] = None,
     seeds: Annotated[
-        int | None, typer.Option(help="Games for each density, at least 1. [default: the scenario's]")
+        int | None, typer.Option(help="Games for each density. [default: the scenario's]")
     ] = None,
-    first_seed: Annotated[int, typer.Option(help="First seed, at least 0.")] = 0,
-    jobs: Jobs = None,
+    first_seed: FirstSeed = 0,
+    jobs: Jobs = CPUS,
     scheduler: Annotated[
         str | None,
         typer.Option(
@@ -59,9 +59,7 @@ def run(
         str, typer.Option(metavar="NAME,...", help=f"Additional tables: {', '.join(RECORDED_TABLES)}.")
     ] = "",
     no_figures: Annotated[bool, typer.Option("--no-figures", help="Do not draw figures.")] = False,
-    progress: Annotated[
-        str, typer.Option(metavar="KIND", help=f"How progress is shown: {', '.join(KINDS)}.")
-    ] = "bar",
+    progress: Annotated[Kind, typer.Option(help="How progress is shown.")] = "bar",
     quiet: Annotated[bool, typer.Option("--quiet", help="Print errors only.")] = False,
 ) -> int:
     """Play scenarios, write tables of their results and draw a figure of each.
@@ -76,18 +74,17 @@ def run(
     scenarios, left_out = planned(
         chosen(ids or CATALOGUE), integers("densities", densities), seeds, suitable_only=everything
     )
-    check_seed("first_seed", first_seed)
-    workers = count_workers(jobs)
     records = words(record)
     for name in records:
         if name not in RECORDED_TABLES:
             raise InputError("record", name, f"must be among {', '.join(RECORDED_TABLES)}")
-    check_kind(progress)
     if left_out:
         _warn(f"none of the densities suits {', '.join(left_out)}: left out")
 
-    kind, command = "none" if quiet else progress, shlex.join(context.obj)
-    tables, failed = _play(scenarios, first_seed, workers, scheduler, records, out, kind, command)
+    command = shlex.join(context.obj)
+    tables, failed = _play(
+        scenarios, first_seed, jobs, scheduler, records, out, "none" if quiet else progress, command
+    )
     lines = [f"table:  {table}" for table in tables]
     if tables and not no_figures:
         from kswarms.analysis.figures.over_n import write_figures
@@ -115,7 +112,7 @@ def _play(
     scheduler: str | None,
     records: Sequence[str],
     out: Path,
-    progress: str,
+    progress: Kind,
     command: str,
 ) -> tuple[list[Path], int]:
     """Play the missing runs of a study; return the tables written and the number of failed runs."""

@@ -204,29 +204,29 @@ def _compare(game: Game, robot: int, full: _Measured, without: _Measured) -> dic
     """Return the measured columns of a robot's row."""
     policies = _policies(game)
     swarm, policy = policies[robot]
-    row: dict[str, Any] = {
-        "run": full.run,
-        "run_without": without.run,
+    mates = [other for other, (its_swarm, _) in enumerate(policies) if its_swarm == swarm and other != robot]
+    opponents = [other for other, (its_swarm, _) in enumerate(policies) if its_swarm != swarm]
+
+    def columns(measured: _Measured) -> dict[str, Any]:
+        return {
+            "run": measured.run,
+            "sud": measured.sud[swarm],
+            "time_sud": measured.time_sud[swarm],
+            "duration": measured.duration,
+            "mates_t_a": sum(measured.times[other][0] for other in mates),
+            "mates_t_p": sum(measured.times[other][1] for other in mates),
+            "opponents_t_a": sum(measured.times[other][0] for other in opponents),
+            "opponents_t_p": sum(measured.times[other][1] for other in opponents),
+        }
+
+    return {
         "robot": robot,
         "swarm": swarm + 1,
         "policy": str(policy),
-        "sud": full.sud[swarm],
-        "sud_without": without.sud[swarm],
-        "time_sud": full.time_sud[swarm],
-        "time_sud_without": without.time_sud[swarm],
         "reward": full.reward[robot],
         "reward_time": full.reward_time[robot],
-        "duration": full.duration,
-        "duration_without": without.duration,
+        "mates_t_a_met": sum(full.met[other, robot] for other in mates),
+        "opponents_t_a_met": sum(full.met[other, robot] for other in opponents),
+        **columns(full),
+        **{f"{name}_without": value for name, value in columns(without).items()},
     }
-    for name, are_mates in (("mates", True), ("opponents", False)):
-        others = [
-            other
-            for other, (its_swarm, _) in enumerate(policies)
-            if other != robot and (its_swarm == swarm) == are_mates
-        ]
-        row[f"{name}_t_a_met"] = sum(full.met[other, robot] for other in others)
-        for k, time in enumerate(("t_a", "t_p")):
-            row[f"{name}_{time}"] = sum(full.times[other][k] for other in others)
-            row[f"{name}_{time}_without"] = sum(without.times[other][k] for other in others)
-    return row

@@ -52,13 +52,10 @@ def serve(start: str | Run, port: int, open_browser: bool, ready: Callable[[str]
 
 
 def _listen(port: int) -> socket.socket:
-    refusal = InputError("port", port, "must be a free port of this machine, 0 for any")
-    if not 0 <= port <= 65535:
-        raise refusal
     try:
         return socket.create_server((HOST, port))
     except OSError:
-        raise refusal from None
+        raise InputError("port", port, "must be a free port of this machine, 0 for any") from None
 
 
 def _server(start: str | Run) -> "uvicorn.Server":

@@ -1,8 +1,10 @@
 """The game as JSON for the browser: the scene and the frames of the arena, and the charts."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Sequence
+from operator import itemgetter
 from typing import Any, Final
 
+from kswarms.agents.theory.times import share_of_time
 from kswarms.analysis.colours import swarm_colour
 from kswarms.scenarios.watch.player import Player, Sample
 
@@ -65,17 +67,17 @@ def charts_of(history: Sequence[Sample]) -> dict[str, Json]:
     times = [sample.time for sample in history]
     began, now = times[0], times[-1]
 
-    def lines(columns: Iterable[Sequence[float]], suffix: str = "", dash: str = "solid") -> list[Json]:
+    def lines(of: Callable[[Json], float], suffix: str = "", dash: str = "solid") -> list[Json]:
         return [
-            _line(f"S{k + 1}{suffix}", k, times, values, dash)
-            for k, values in enumerate(zip(*columns, strict=True))
+            _line(f"S{k + 1}{suffix}", k, times, [of(sample.swarms[k]) for sample in history], dash)
+            for k in range(len(history[0].swarms))
         ]
 
-    inter = lines((sample.inter for sample in history), " inter")
-    intra = lines((sample.intra for sample in history), " intra", "dotted")
+    inter = lines(lambda row: _share_of_time(row, "t_a_inter"), " inter")
+    intra = lines(lambda row: _share_of_time(row, "t_a_intra"), " intra", "dotted")
     charts = {
-        "Pucks": _chart(lines(sample.pucks for sample in history), began, now),
-        "SUD (pucks)": _chart(lines(sample.sud for sample in history), began, now),
+        "Pucks": _chart(lines(itemgetter("pucks")), began, now),
+        "SUD (pucks)": _chart(lines(itemgetter("sud")), began, now),
         "Share of time in conflict": _chart(inter + intra, began, now, most=1.0),
     }
     learned = []
@@ -94,6 +96,10 @@ def charts_of(history: Sequence[Sample]) -> dict[str, Json]:
         heading = "Share of learners whose best action is to fight"
         charts[heading] = _chart(learned, everything[0].time, now, most=1.0)
     return charts
+
+
+def _share_of_time(row: Json, name: str) -> float:
+    return float(share_of_time(row[name], row["t_a_intra"] + row["t_a_inter"], row["t_p"]))
 
 
 def _line(name: str, swarm: int, times: Sequence[float], values: Sequence[float], dash: str) -> Json:

@@ -5,8 +5,7 @@ storing its states.
 """
 
 from collections import deque
-from collections.abc import Sequence
-from itertools import groupby, islice
+from itertools import islice
 from threading import RLock
 from typing import Any, Final, NamedTuple
 
@@ -14,8 +13,6 @@ import numpy as np
 
 from kswarms.agents.common.arrays import Floats, Integers
 from kswarms.agents.robot.state import ACTION
-from kswarms.agents.theory.swarms import swarm_utility_difference
-from kswarms.agents.theory.times import share_of_time
 from kswarms.model.description.game import Game
 from kswarms.model.game_model import GameModel
 from kswarms.model.recorder import policy_rows
@@ -62,26 +59,21 @@ class Snapshot(NamedTuple):
 
 
 class Sample(NamedTuple):
-    """Measures of each swarm at an instant: a point of each curve.
+    """Results so far: a point of each curve.
 
     Attributes
     ----------
     time : float
         Time of the measured game, negative during learning (s).
-    pucks, sud : tuple of int
-        Score; Swarm Utility Difference on pucks (Eq. 3.7).
-    intra, inter : tuple of float
-        Shares of the time so far in conflicts within the swarm and with other swarms; the rest is T(p).
+    swarms : list of dict
+        Results of each swarm, as `kswarms.model.game_model.GameModel.results` returns them.
     fights : dict of (int, int) to float
-        For each learning swarm and swarm learned about, from 1: the share of robots whose best action is
-        to fight.
+        For each learning swarm and swarm learned about, from 1: the share of robots whose best action is to
+        fight.
     """
 
     time: float
-    pucks: tuple[int, ...]
-    sud: tuple[int, ...]
-    intra: tuple[float, ...]
-    inter: tuple[float, ...]
+    swarms: list[dict[str, Any]]
     fights: dict[tuple[int, int], float]
 
 
@@ -240,24 +232,6 @@ class Player:
             self._history = self._history[::2]
 
     def _sample(self) -> Sample:
-        model = self.model
-        shares = [_shares(*model.times(k), k) for k in range(len(model.members))]
-        return Sample(
-            self.time,
-            tuple(model.pucks),
-            tuple(swarm_utility_difference(model.pucks, k) for k in range(len(model.pucks))),
-            tuple(intra for intra, _ in shares),
-            tuple(inter for _, inter in shares),
-            _fights(policy_rows(model)),
-        )
-
-
-def _shares(t_a: Sequence[int], t_p: int, swarm: int) -> tuple[float, float]:
-    """Return the shares of time in conflicts within the swarm and with others, 0 at the start."""
-    total = sum(t_a)
-    return share_of_time(t_a[swarm], total, t_p), share_of_time(total - t_a[swarm], total, t_p)
-
-
-def _fights(rows: Sequence[dict[str, Any]]) -> dict[tuple[int, int], float]:
-    pairs = groupby(rows, key=lambda row: (row["swarm"], row["opponent"]))
-    return {pair: next(of_pair)["attack_share"] for pair, of_pair in pairs}
+        learned = policy_rows(self.model)
+        fights = {(row["swarm"], row["opponent"]): row["attack_share"] for row in learned}
+        return Sample(self.time, self.model.results(), fights)

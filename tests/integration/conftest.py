@@ -1,4 +1,4 @@
-"""What several files of these tests begin with: a study to play in, games to break, a page to look at."""
+"""Fixtures of several files: an empty directory, a tiny study, broken games, a page."""
 
 import os
 import sys
@@ -13,16 +13,21 @@ from tests.helpers.tiny_study import TINY, Fault
 
 
 @pytest.fixture
-def with_a_file_of_scenarios(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let relative paths lead into a directory of the test's own, which workers can leave for the package."""
+def empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Run a test in an empty directory; other processes still find the package."""
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(path or str(Path.cwd()) for path in sys.path))
     monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
+def with_a_file_of_scenarios(empty_directory: None) -> None:
+    """Run a test in a directory that has a file of scenarios only."""
     Path("tiny.toml").write_text(TINY.to_toml())
 
 
 @pytest.fixture
 def break_games(monkeypatch: pytest.MonkeyPatch) -> Callable[[Fault], None]:
-    """Let something happen before each game."""
+    """Return a function that installs a fault before each game."""
     real = GameModel.play
 
     def install(fault: Fault) -> None:
@@ -37,7 +42,7 @@ def break_games(monkeypatch: pytest.MonkeyPatch) -> Callable[[Fault], None]:
 
 @pytest.fixture
 def show(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Any]]:
-    """Show pages, and close them."""
-    from tests.helpers.shown_page import showing  # here, for the other tests do without the extra `explore`
+    """Return a function that shows a page; close the pages afterwards."""
+    from tests.helpers.shown_page import showing  # here, since it needs the extra `explore`
 
     yield from showing(monkeypatch)

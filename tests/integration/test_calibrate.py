@@ -1,7 +1,6 @@
 """`kswarms calibrate` on real games of few robots, and on stubbed ones when its process is killed."""
 
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -10,6 +9,8 @@ import pytest
 
 from kswarms.analysis.results import published
 from kswarms.scenarios.cli import invoke
+
+pytestmark = pytest.mark.usefixtures("empty_directory")
 
 TINY = [
     *("calibrate", "--free", "friction,gamma", "--densities", "6", "--seeds", "1", "--generations", "2"),
@@ -39,13 +40,6 @@ def play(runs):
 setup = Setup(free=("friction", "gamma"), densities=(6,), seeds=1, generations=3, population=4)
 calibrate(setup, {("avoid", 6): 2.0, ("attack", 6): 0.0}, play, Path(sys.argv[1]))
 """
-
-
-@pytest.fixture(autouse=True)
-def _in_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let relative paths lead into a directory of the test's own; processes find the package from there."""
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(path or str(Path.cwd()) for path in sys.path))
-    monkeypatch.chdir(tmp_path)
 
 
 @pytest.fixture
@@ -92,16 +86,7 @@ def test_calibrate_plays_says_what_it_found_and_does_not_play_again(
 @pytest.mark.parametrize(
     ("options", "line"),
     [
-        ("--free friction,viscosity", "free='viscosity': must be among conflict_distance, "),
-        ("--free friction", "free='friction': must be two or more different parameters"),
-        ("--free=", "free='': must be two or more"),
         ("--densities 6,7", "densities=7: must be among 6, 10, 16"),
-        ("--densities x", "densities='x': must be integers"),
-        ("--seeds 0", "seeds=0: must be greater"),
-        ("--generations 0", "generations=0: must be greater"),
-        ("--population 2", "population=2: must be at least 4"),
-        ("--validation-seeds 0", "validation_seeds=0: must be greater"),
-        ("--jobs 0", "jobs=0: must be at least 1"),
         ("--out taken", "out='taken': must be a writable directory"),
         ("--resume", "No such option"),
     ],

@@ -16,10 +16,7 @@ from kswarms.scenarios.runs.run import digest
 from kswarms.scenarios.watch.conflicts import HEADINGS, conflicts_of
 from kswarms.scenarios.watch.recorded_run import recorded_run
 
-
-@pytest.fixture(autouse=True)
-def _in_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("empty_directory")
 
 
 def _recorded(scenario: str = "fig-6.1c") -> str:
@@ -169,29 +166,19 @@ def test_a_run_that_was_compared_may_be_of_a_scenario_that_is_not_at_hand() -> N
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        ("film fig-9", "id='fig-9': must be a scenario"),
-        ("film fig-6.1c --n 7", "n=7: must be a multiple of 2"),
         ("film fig-6.1c --condition x", "condition='x': must be one of ''"),
-        ("film fig-6.1c --seed -1", "seed=-1: must be at least 0"),
         ("film fig-6.1c --from -1", "from=-1.0: must be at least 0.0, below 600.0"),
-        ("film fig-6.1c --from 600", "from=600.0: must be at least 0.0, below 600.0"),
         ("film fig-6.1c --from 9 --to 9", "to=9.0: must be greater than 9.0, and at most 600.0"),
-        ("film fig-6.1c --to 601", "to=601.0: must be"),
         ("film fig-6.1c --speed 0", "speed=0.0: must be greater than 0"),
-        ("film fig-6.1c --speed nan", "speed=nan: must be greater than 0"),
-        ("film fig-6.1c --fps 61", "fps=61: must be in 1 to 60"),
-        ("film fig-6.1c --size 10", "size=10: must be in 64 to 4096"),
-        ("film fig-6.1c --sheet 0", "sheet=0: must be in 1 to 100"),
         ("film fig-6.1c --out a.avi", "out='a.avi': must end with .mp4 or .gif"),
         ("film fig-6.1c --sheet 2 --out a.gif", "out='a.gif': must end with .png"),
         ("film fig-6.1c --out nowhere/a.gif", "out='nowhere/a.gif': must be in a directory that exists"),
         ("film --run 0123", "run='0123': needs the results directory that has it"),
         ("film --run 0123 nowhere", "results='nowhere': must be a directory"),
-        ("film --run 0123 nowhere --n 6", "results='nowhere': must be a directory"),
         ("conflicts fig-6.1c --n 6 --robot 6", "robot=6: must be in 0 to 5"),
         ("explore fig-9", "id='fig-9': must be a scenario"),
         ("explore --run 0123", "run='0123': needs the results directory"),
-        ("explore --port 99999", "port=99999: must be a free port of this machine, 0 for any"),
+        ("explore --port 99999", "port='99999': must be less than or equal to 65535"),
     ],
 )
 def test_bad_input_is_refused_in_one_line_and_nothing_is_written(

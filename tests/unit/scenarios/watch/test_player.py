@@ -132,16 +132,9 @@ def test_playing_on_does_not_change_a_history_that_was_given() -> None:
 
 def test_a_sample_has_the_curves_of_every_swarm() -> None:
     player = Player(LEARNING, 3)
-    assert player.history[0].inter == (0.0, 0.0)
     player.seek(40.0)
     last = player.history[-1]
-    results = player.model.results()
-    assert last.pucks == tuple(row["pucks"] for row in results)
-    assert last.sud == tuple(row["sud"] for row in results)
-    for k, row in enumerate(results):
-        lived = row["t_a_intra"] + row["t_a_inter"] + row["t_p"]
-        assert last.intra[k] == pytest.approx(row["t_a_intra"] / lived)
-        assert last.inter[k] == pytest.approx(row["t_a_inter"] / lived)
+    assert last.swarms == player.model.results()
     learners = [robot.policy for robot in player.model.members[1]]
     fighters = sum(learner.learned(0).direction == TOWARDS for learner in learners)  # type: ignore[attr-defined]
     assert last.fights == {(2, 1): fighters / len(learners)}
