@@ -65,6 +65,9 @@ def columns() -> str:
         "The tables in a results directory are Parquet files. Robots are numbered from 0, S1's first.\n"
         "Swarms are numbered from 1. The metadata of each file holds the version of its columns as\n"
         f"`kswarms_schema`, now {SCHEMA_VERSION}. Files of kswarms 0.1.0 hold no version.\n\n"
+        "The fields of a scenario's [grid](../scenarios.md#a-grid-of-values) are further columns of `runs.parquet`\n"
+        "and `policies.parquet`, after `n` and `seed`. They are named by the field, for example `side`. If a column\n"
+        "has this name already, they begin with `grid.`, for example `grid.duration`.\n\n"
         f"{data_dictionary()}"
     )
 

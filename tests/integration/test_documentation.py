@@ -9,6 +9,7 @@ import sys
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any
 
 import pyarrow.parquet as pq
@@ -130,6 +131,12 @@ def test_the_imports_shown_on_a_page_work(page: Path) -> None:
     for module, names in re.findall(r"^(?:>>> )?from (kswarms[\w.]*) import ([\w, ]+)$", text, re.MULTILINE):
         for name in names.split(", "):
             assert hasattr(import_module(module), name) or import_module(f"{module}.{name}")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_the_code_that_a_page_links_to_exists(page: Path) -> None:
+    for name in re.findall(r"\(reference/\w+\.md#(kswarms\.[\w.]+)\)", page.read_text(encoding="utf-8")):
+        assert resolve_name(name) is not None
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
