@@ -60,16 +60,17 @@ def reference(package: str) -> str:
 
 def columns() -> str:
     """Return the page of the columns of all tables."""
-    return (
-        "# Columns of the tables\n\n"
-        "The tables in a results directory are Parquet files. Robots are numbered from 0, S1's first.\n"
-        "Swarms are numbered from 1. The metadata of each file holds the version of its columns as\n"
-        f"`kswarms_schema`, now {SCHEMA_VERSION}. Files of kswarms 0.1.0 hold no version.\n\n"
-        "The fields of a scenario's [grid](../scenarios.md#a-grid-of-values) are further columns of `runs.parquet`\n"
-        "and `policies.parquet`, after `n` and `seed`. They are named by the field, for example `side`. If a column\n"
-        "has this name already, they begin with `grid.`, for example `grid.duration`.\n\n"
-        f"{data_dictionary()}"
-    )
+    return f"""# Columns of the tables
+
+Tables in a results directory are Parquet files. Robots are numbered from 0, S1's first. Swarms are numbered
+from 1. The metadata of each file holds the version of its columns as `kswarms_schema`, now {SCHEMA_VERSION}.
+Files of kswarms 0.1.0 hold no version.
+
+The fields of a [grid](../scenarios.md#a-grid-of-values) are further columns of `runs.parquet` and
+`policies.parquet`, after `n` and `seed`. They are named by the field, for example `side`. If a column has that
+name already, they begin with `grid.`, for example `grid.duration`.
+
+{data_dictionary()}"""
 
 
 def notebook(path: Path) -> tuple[str, dict[str, bytes]]:
