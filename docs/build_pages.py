@@ -67,8 +67,8 @@ from 1. The metadata of each file holds the version of its columns as `kswarms_s
 Files of kswarms 0.1.0 hold no version.
 
 The fields of a [grid](../scenarios.md#a-grid-of-values) are further columns of `runs.parquet` and
-`policies.parquet`, after `n` and `seed`. They are named by the field, for example `side`. If a column has that
-name already, they begin with `grid.`, for example `grid.duration`.
+`policies.parquet`, after `n` and `seed`. They are named by the field, for example `side`. If a column has
+that name already, they begin with `grid.`, for example `grid.duration`.
 
 {data_dictionary()}"""
 
