@@ -18,7 +18,7 @@ from kswarms.model.description.game import Game
 from kswarms.model.game_state import GameState
 from kswarms.model.kernel.kernel import Kernel
 from kswarms.model.kernel.percepts import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE
-from kswarms.model.recorder import Recorder, Table, parse_record, result_rows
+from kswarms.model.recorder import Recorder, Table, parse_record, policy_rows, result_rows
 
 
 class GameModel(GameState):
@@ -98,6 +98,10 @@ class GameModel(GameState):
     def results(self) -> list[dict[str, Any]]:
         """Return one row per swarm: the columns of the table ``runs`` from ``swarm`` on."""
         return result_rows(self)
+
+    def policy_results(self) -> list[dict[str, Any]]:
+        """Return one row per learning swarm, swarm learned about and action: the table ``policies``."""
+        return policy_rows(self)
 
     def tables(self) -> dict[str, Table]:
         """Return the recorded tables (conflicts, robots, trajectory) by name; columns have equal lengths."""

@@ -1,11 +1,13 @@
-"""Reading the outcomes in a results directory (section 3.5 of the experiments)."""
+"""Reading outcomes: from a results directory (section 3.5 of the experiments) or from games of a script."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import pandas as pd
 
 from kswarms.agents.common.errors import InputError
+from kswarms.analysis.results.sweeps import Sweep, tables_of_sweep
 from kswarms.analysis.results.tables import read_table
 
 
@@ -25,19 +27,42 @@ class Results:
     policies: pd.DataFrame | None = None
 
 
-def read_results(directory: Path) -> Results:
-    """Read the outcomes in a results directory.
+def read_results(
+    source: str | Path | Sweep, scenario: str = "sweep", by: Sequence[str] | None = None
+) -> Results:
+    """Read outcomes from a results directory, or from games of a script.
 
     Parameters
     ----------
-    directory : Path
-        Directory that `kswarms run --out` wrote.
+    source : Path, str, pandas.DataFrame, iterable of mappings, model, or iterable of models
+        * Path or str: a directory that `kswarms run --out` wrote;
+        * the rows of `mesa.batch_run` with ``record="model"``, as a list or data frame; the last row of each
+          game is used. They hold no learned policies;
+        * `model.datacollector.get_model_vars_dataframe()` of one game;
+        * models whose games have ended.
+    scenario : str
+        Id of the scenario, for games of a script.
+    by : sequence of str, optional
+        Parameters that distinguish the conditions of a script; by default all that differ between its games,
+        other than ``n`` and ``seed``. The condition is named by their values: ``side=2.0, layout=ring``.
 
     Raises
     ------
     InputError
-        As for `read_runs`, and for `read_policies` if the directory holds policies.
+        The directory cannot be read (`read_runs`, `read_policies`); a game has not ended or lacks model
+        reporters; or two games have the same condition, N and seed.
+
+    Examples
+    --------
+    >>> from kswarms import ForagingModel, read_results
+    >>> model = ForagingModel(n=6, policies="avoid,attack", duration=30, seed=1)
+    >>> model.play()
+    >>> read_results(model).runs[["scenario", "n", "seed", "swarm", "policy"]].values.tolist()
+    [['sweep', 6, 1, 1, 'avoid'], ['sweep', 6, 1, 2, 'attack']]
     """
+    if not isinstance(source, str | Path):
+        return Results(*tables_of_sweep(source, scenario, by))
+    directory = Path(source)
     learned = (directory / "policies.parquet").exists()
     return Results(read_runs(directory), read_policies(directory) if learned else None)
 

@@ -1,0 +1,117 @@
+"""Tables of results from games of a script: rows of `mesa.batch_run`, samples of a DataCollector, models."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Final, Protocol
+
+import pandas as pd
+
+from kswarms.agents.common.columns import names
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.results.tables import check_columns
+
+_POINT: Final = ("run", "scenario", "condition", "n", "seed")
+_OF_GAME: Final = ("duration", "ended")
+_OF_SWARM: Final = [name for name in names("runs") if name not in {*_POINT, *_OF_GAME, "swarm"}]
+_NO_PARAMETERS: Final = {
+    *(*_POINT, *_OF_GAME, "RunId", "iteration", "Step", "AgentID", "time"),
+    *("swarm", "state", "puck", "x", "y", "heading"),  # agent reporters
+}
+
+
+class PlayedModel(Protocol):
+    """A model at the end of its game, such as `kswarms.model.foraging.ForagingModel`."""
+
+    seed: int
+
+    def results(self) -> list[dict[str, Any]]:
+        """Return one row per swarm: the columns of the table ``runs`` from ``swarm`` on."""
+
+    def policy_results(self) -> list[dict[str, Any]]:
+        """Return the rows of the table ``policies``, from ``swarm`` on; none if no swarm learned."""
+
+
+Sweep = pd.DataFrame | Iterable[Mapping[str, Any]] | PlayedModel | Iterable[PlayedModel]
+"""Rows of `mesa.batch_run`, samples of one game, or one or more models."""
+
+
+def tables_of_sweep(
+    source: Sweep, scenario: str, by: Sequence[str] | None
+) -> tuple[pd.DataFrame, pd.DataFrame | None]:
+    """Return the tables ``runs`` and ``policies`` of a sweep, as `read_results` describes them."""
+    models: list[Any] = []
+    games: dict[object, dict[str, Any]] = {}
+    for item in _items(source):
+        if isinstance(item, Mapping):
+            games[item.get("RunId", 0)] = dict(item)  # the last row of a game is its end
+        else:
+            games[len(models)] = _end_of_game(item)
+            models.append(item)
+    if not games:
+        raise InputError("source", "no games", "must hold at least one game")
+    conditions = _conditions(list(games.values()), by)
+    runs, policies = [], []
+    for index, (run, game) in enumerate(games.items()):
+        swarms = _swarms(game)
+        size = sum(swarm["size"] for swarm in swarms)
+        values = (str(run), scenario, conditions[index], game.get("n", size), game.get("seed", 0))
+        point = dict(zip(_POINT, values, strict=True))
+        runs += [point | swarm for swarm in swarms]
+        policies += [point | row for row in (models[index].policy_results() if models else ())]
+    table = _typed(runs, "runs")
+    if table.duplicated(["condition", "n", "seed", "swarm"]).any():
+        raise InputError(
+            "by", by, "must be the parameters that differ: there are two games with one condition, N and seed"
+        )
+    return table, _typed(policies, "policies") if policies else None
+
+
+def _items(source: Sweep) -> list[Any]:
+    if isinstance(source, pd.DataFrame):
+        return source.to_dict("records")
+    return list(source) if isinstance(source, Iterable) else [source]
+
+
+def _end_of_game(model: PlayedModel) -> dict[str, Any]:
+    """Return the end of a model's game in the form of a row of `mesa.batch_run`."""
+    swarms = model.results()
+    game = {f"{name}_{swarm['swarm']}": swarm[name] for swarm in swarms for name in _OF_SWARM}
+    game |= {name: swarms[0][name] for name in _OF_GAME}
+    return game | {"seed": model.seed, "policies": ",".join(swarm["policy"] for swarm in swarms)}
+
+
+def _swarms(game: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return the values of each swarm at the end of a game."""
+    if "ended" not in game or "pucks_1" not in game:
+        raise InputError("source", sorted(map(str, game)), 'must have model reporters (record="model")')
+    if not game["ended"]:
+        raise InputError("ended", game["ended"], "must be given: a game was stopped before its end")
+    of_game = {name: game[name] for name in _OF_GAME}
+    swarms: list[dict[str, Any]] = []
+    # A data frame has NaN for the swarms that only other games have.
+    while pd.notna(game.get(f"pucks_{len(swarms) + 1}")):
+        k = len(swarms) + 1
+        swarms.append({"swarm": k} | {name: game[f"{name}_{k}"] for name in _OF_SWARM} | of_game)
+    return swarms
+
+
+def _conditions(games: Sequence[Mapping[str, Any]], by: Sequence[str] | None) -> list[str]:
+    """Return the condition of each game, such as ``side=2.0``: the parameters `by`, or those that differ."""
+    if by is None:
+        reported = {f"{name}_{k}" for name in (*_OF_SWARM, "share_a", "share_p") for k in range(1, 100)}
+        candidates = [name for name in games[0] if name not in _NO_PARAMETERS | reported]
+        if all(game.get("ended") == "time" for game in games):
+            candidates.append("duration")
+        by = [name for name in candidates if len({_text(game.get(name)) for game in games}) > 1]
+    return [", ".join(f"{name}={_text(game.get(name))}" for name in by) for game in games]
+
+
+def _text(value: Any) -> str:
+    """Return a parameter as text: a class or function by its name, a list by its elements."""
+    if isinstance(value, list | tuple):
+        return ",".join(map(_text, value))
+    return str(getattr(value, "__name__", value))
+
+
+def _typed(rows: Sequence[Mapping[str, Any]], table: str) -> pd.DataFrame:
+    frame = pd.DataFrame(rows, columns=names(table)).astype(dict.fromkeys(names(table, "integer"), "int64"))
+    return check_columns(frame, table, names(table))
