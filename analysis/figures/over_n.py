@@ -30,7 +30,7 @@ from kswarms.analysis.measures.quantities import (
     split_curves,
     with_time_shares,
 )
-from kswarms.analysis.results.runs import read_runs
+from kswarms.analysis.results.runs import Results, read_runs
 from kswarms.analysis.tables.learned import named_columns
 
 
@@ -159,14 +159,17 @@ def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool =
 
 
 def write_figures(
-    results: Path, out: Path, scenarios: Sequence[str] | None = None, titles: Mapping[str, str] | None = None
+    results: Path | Results,
+    out: Path,
+    scenarios: Sequence[str] | None = None,
+    titles: Mapping[str, str] | None = None,
 ) -> list[Path]:
     """Write the figure of each scenario of the results as `<id>.png`.
 
     Parameters
     ----------
-    results : Path
-        Directory with `runs.parquet`.
+    results : Path or Results
+        Directory with `runs.parquet`, or results that were read.
     out : Path
         Folder of the figures; it is created if it does not exist.
     scenarios : sequence of str, optional
@@ -184,7 +187,7 @@ def write_figures(
     InputError
         The runs cannot be read, or a figure cannot be written; then an existing figure is unchanged.
     """
-    runs = read_runs(results)
+    runs = results.runs if isinstance(results, Results) else read_runs(results)
     present = dict.fromkeys(runs["scenario"])
     paths = []
     for scenario in present if scenarios is None else scenarios:

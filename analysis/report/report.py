@@ -51,22 +51,22 @@ Progress = Callable[[Sequence[Step]], Iterable[Step]]
 
 
 def build_report(
-    directory: Path,
-    plan: Mapping[str, Planned],
-    source_tables: Tables,
+    source: Path | Results,
+    plan: Mapping[str, Planned] | None = None,
+    source_tables: Tables | None = None,
     findings: Sequence[Finding] = FINDINGS,
     places_of: PlacesOf = lambda *_: None,
     progress: Progress = iter,
 ) -> Report:
-    """Build the report on a results directory.
+    """Build the report on results.
 
     Parameters
     ----------
-    directory : Path
-        Results directory of `kswarms run --out`.
-    plan : mapping of str to Planned
+    source : Path or Results
+        Results directory of `kswarms run --out`, or the results of a sweep, which have no recorded tables.
+    plan : mapping of str to Planned, optional
         Scenarios by id, in their order in the report; other scenarios of the results follow.
-    source_tables : mapping of str to (str, sequence of str)
+    source_tables : mapping of str to (str, sequence of str), optional
         Title and scenarios of each table of the source.
     findings : sequence of Finding
         Findings to judge.
@@ -85,27 +85,32 @@ def build_report(
     InputError
         The results cannot be read.
     """
-    results = read_results(directory)
+    results = source if isinstance(source, Results) else read_results(source)
+    plan, tables = plan or {}, source_tables or {}
     covered = coverage(results.runs, plan)
-    provenance = provenance_parts(directory)
-    with_conflicts, with_robots = recorded_conditions(directory, results.runs)
-    steps: list[Step] = [
-        lambda: [("verdicts", verdicts_part(judge_all(results, findings)))],
-        *_scenario_steps(results, plan, source_tables, covered),
-        *_table_steps(results, source_tables),
-        partial(argos_parts, results.runs),
-        *(partial(conflict_parts, directory, condition, places_of) for condition in with_conflicts),
-        *(partial(robots_parts, directory, condition) for condition in with_robots),
-    ]
     parts: dict[str, list[Part]] = defaultdict(list)
+    steps: list[Step] = [
+        *([lambda: [("verdicts", verdicts_part(judge_all(results, findings)))]] if findings else []),
+        *_scenario_steps(results, plan, tables, covered),
+        *_table_steps(results, tables),
+        partial(argos_parts, results.runs),
+    ]
+    name = "a sweep"
+    if not isinstance(source, Results):
+        name = source.resolve().name
+        parts["provenance"] = provenance_parts(source)
+        with_conflicts, with_robots = recorded_conditions(source, results.runs)
+        steps += [partial(conflict_parts, source, condition, places_of) for condition in with_conflicts]
+        steps += [partial(robots_parts, source, condition) for condition in with_robots]
     for step in progress(steps):
         for chapter, part in step():
             parts[chapter].append(part)
-    missing = Part("missing", _TITLES["missing"])
-    missing.add_table("coverage", "Games of each scenario", coverage_table(covered), covered)
-    parts |= {"missing": [missing], "provenance": provenance}
+    if plan:
+        missing = Part("missing", _TITLES["missing"])
+        missing.add_table("coverage", "Games of each scenario", coverage_table(covered), covered)
+        parts["missing"] = [missing]
     chapters = [Chapter(_anchor(title), title, parts[key]) for key, title in _TITLES.items() if parts[key]]
-    return Report(f"Report on {directory.resolve().name}", _summary(results, covered), chapters)
+    return Report(f"Report on {name}", _summary(results, covered), chapters)
 
 
 def _scenario_steps(
@@ -143,9 +148,10 @@ def _summary(results: Results, covered: pd.DataFrame) -> list[str]:
     seeds = runs.groupby(["scenario", "condition", "n"])["seed"].nunique()
     complete = int((covered["missing"] == "").sum())
     incomplete = int((covered["games"] > 0).sum()) - complete
+    planned = f" Of {len(covered)} scenarios, {complete} are complete and {incomplete} in part."
     return [
-        f"{runs['run'].nunique():,} games with {span(seeds.min(), seeds.max())} seeds at each density. "
-        f"Of {len(covered)} scenarios, {complete} are complete and {incomplete} in part.",
+        f"{runs['run'].nunique():,} games with {span(seeds.min(), seeds.max())} seeds at each density."
+        + (planned if len(covered) else ""),
         "Each figure is shown in the form of the source, then with the 95 % interval of each mean and with "
         "single seeds. Its numbers are below it, beside published ones if these are available.",
     ]

@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 
 from kswarms import Finding, ForagingModel, InputError, figure_of, judge, read_results
+from kswarms.analysis.report.report import build_report
 from kswarms.analysis.tables.scores import scores
 
 GAMES: dict[str, Any] = {
@@ -35,6 +36,9 @@ def test_a_sweep_is_drawn_and_judged() -> None:
     claim["left"] = {"scenario": "crowd", "condition": "policies=avoid,avoid", "swarm": 1}
     verdict = judge(Finding(id="few", statement="Few pucks in 20 s.", claim=claim), results)
     assert (verdict.verdict, verdict.seeds) == ("holds", 6)
+    page = build_report(results, findings=[]).to_html()
+    assert "Report on a sweep" in page
+    assert "policies=avoid,attack, S1: avoid" in page
 
 
 def test_rows_samples_and_models_give_the_same_runs() -> None:
