@@ -4,15 +4,15 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Literal, Self
+
+from pydantic import Field, model_validator
 
 from kswarms.agents.actions import AWAY, Action
 from kswarms.agents.common.atomic_files import atomic_path
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.interface import Policy, Setting
-
-_FORMAT: Final = "kswarms-policies-1"
 
 
 class _SavedArm(Checked):
@@ -22,6 +22,20 @@ class _SavedArm(Checked):
     time: float
     count: float
     q: float | None
+
+    @model_validator(mode="after")
+    def _check_q(self) -> Self:
+        if (self.q is None) != (self.count <= 0):
+            raise ValueError(f"q={self.q!r} where count={self.count:g}")
+        return self
+
+
+class SavedPolicies(Checked):
+    """Learned policies of the robots of a swarm, as stored in a file."""
+
+    format: Literal["kswarms-policies-1"] = "kswarms-policies-1"
+    swarm: int
+    robots: tuple[tuple[_SavedArm, ...], ...] = Field(min_length=1)
 
 
 class LearnedPolicy:
@@ -47,22 +61,19 @@ class LearnedPolicy:
         if not isinstance(file, str) or not file:
             raise InputError("file", file, "must be the path of a file of learned policies")
         saved = load(Path(file))
-        if saved["swarm"] != setting.swarm + 1:
-            raise InputError(
-                "file", file, f"must hold policies of swarm {setting.swarm + 1}, not {saved['swarm']}"
-            )
-        robots = saved["robots"]
+        if saved.swarm != setting.swarm + 1:
+            rule = f"must hold policies of swarm {setting.swarm + 1}, not {saved.swarm}"
+            raise InputError("file", file, rule)
         names = [action.name for action in setting.actions]
-        for arm in (arm for arms in robots for arm in arms):
-            if arm["action"] not in names:
-                raise InputError("file", file, f"has action {arm['action']}, the game {', '.join(names)}")
-            if not 1 <= arm["opponent"] <= setting.swarms:
-                raise InputError(
-                    "file", file, f"has swarm {arm['opponent']}, the game has {setting.swarms}"
-                )
+        for arm in (arm for arms in saved.robots for arm in arms):
+            if arm.action not in names:
+                raise InputError("file", file, f"has action {arm.action}, the game {', '.join(names)}")
+            if not 1 <= arm.opponent <= setting.swarms:
+                raise InputError("file", file, f"has swarm {arm.opponent}, the game has {setting.swarms}")
         self.swarm = setting.swarm
         self._flight = flight(setting.actions)
-        self._actions = best_actions(robots[setting.place % len(robots)], setting.actions)
+        arms = saved.robots[setting.place % len(saved.robots)]
+        self._actions = best_actions([dict(arm) for arm in arms], setting.actions)
 
     def choose(self, opponent: int) -> Action:
         """Return the action against a robot of swarm `opponent` (from 0)."""
@@ -123,8 +134,8 @@ def save(path: Path, swarm: int, robots: Sequence[Sequence[Mapping[str, Any]]]) 
     OSError
         If the file cannot be written.
     """
-    arms_of_robots = [[_without_nan(arm) for arm in arms] for arms in robots]
-    text = json.dumps({"format": _FORMAT, "swarm": swarm, "robots": arms_of_robots}, indent=1)
+    saved = SavedPolicies(swarm=swarm, robots=[list(map(_without_nan, arms)) for arms in robots])
+    text = json.dumps(saved.model_dump(), indent=1)
     with atomic_path(path) as file:
         file.write_text(text, encoding="utf-8")
 
@@ -146,7 +157,7 @@ def check_arms(arms: Sequence[Mapping[str, Any]]) -> None:
         _SavedArm(**_without_nan(arm))
 
 
-def load(path: Path) -> dict[str, Any]:
+def load(path: Path) -> SavedPolicies:
     """Read a file written by `save`.
 
     Raises
@@ -156,17 +167,10 @@ def load(path: Path) -> dict[str, Any]:
     """
     try:
         return _load(path, path.stat().st_mtime_ns)
-    except (OSError, ValueError, ArithmeticError, KeyError, TypeError, RecursionError) as error:
+    except (OSError, ValueError, TypeError, RecursionError) as error:
         raise InputError("file", str(path), f"must be a file of learned policies ({error})") from None
 
 
 @lru_cache(maxsize=16)
-def _load(path: Path, _changed: int) -> dict[str, Any]:
-    saved: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-    if saved["format"] != _FORMAT or not saved["robots"]:
-        raise ValueError(f"not of the form {_FORMAT}")
-    robots = [[_SavedArm(**arm).model_dump() for arm in arms] for arms in saved["robots"]]
-    for arm in (arm for arms in robots for arm in arms):
-        if (arm["q"] is None) != (arm["count"] <= 0):
-            raise ValueError(f"q={arm['q']!r} where count={arm['count']:g}")
-    return {"swarm": int(saved["swarm"]), "robots": robots}
+def _load(path: Path, _changed: int) -> SavedPolicies:
+    return SavedPolicies(**json.loads(path.read_text(encoding="utf-8")))

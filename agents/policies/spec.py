@@ -5,6 +5,7 @@ A policy is a text, a class or a factory. A text is one of `POLICIES` or a user-
 taken. Several policies, joined by ``+`` or in a list, are dealt out to the robots of a swarm.
 """
 
+import copy
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
@@ -19,9 +20,9 @@ from kswarms.agents.policies.fixed import FixedPolicy
 from kswarms.agents.policies.interface import Policy, Setting
 from kswarms.agents.policies.learner import LEARNS_BY
 from kswarms.agents.policies.registry import ALIASES, POLICIES
-from kswarms.agents.policies.user_policy import build_user_policy, check_factory
-from kswarms.agents.user_code.loading import is_reference, load_class, reference_to, sources
-from kswarms.agents.user_code.syntax import Call, is_literal, parse_call, require_known, split_outside
+from kswarms.agents.policies.user_policy import check_factory, parameters_of
+from kswarms.agents.user_code.loading import is_reference, load_class, reference_to, sources, user_errors
+from kswarms.agents.user_code.syntax import Call, is_literal, parse_call, split_outside
 
 Factory = Callable[[Setting], Policy]
 """A policy's class, or a callable that returns a policy: ``functools.partial(MyPolicy, patience=2)``."""
@@ -33,18 +34,16 @@ _MAKERS: Final[dict[str, Callable[[Any], Any]]] = {"reward": make_reward, "rule"
 
 @dataclass(frozen=True)
 class PolicySpec:
-    """One policy with its arguments.
-
-    Printing a spec gives its text. A spec is a factory itself.
+    """One policy with its arguments. Printing it gives its text.
 
     Attributes
     ----------
     label : str
-        The text of the policy, or a description of a factory that has no text.
+        Text of the policy, or the name of a factory without a text.
     given : callable, optional
         The class or factory, if the policy was given as one.
     call : Call, optional
-        Name and arguments; none for a factory that another process cannot import.
+        Name and arguments; None for a factory that another process cannot import.
     """
 
     label: str
@@ -65,13 +64,7 @@ class PolicySpec:
 
     @property
     def text(self) -> str:
-        """Text from which another process can build the policy.
-
-        Raises
-        ------
-        InputError
-            If there is none.
-        """
+        """Text from which another process can build the policy; an `InputError` if there is none."""
         self._require_call()
         return self.label
 
@@ -112,53 +105,40 @@ class PolicySpec:
         InputError
             If there is no such policy, or an argument is not allowed.
         """
-        name, arguments = self.name, self.arguments
-        if self.given is not None:
-            check_factory(name, self.given, {})
-            return partial(build_user_policy, name, self.given, {})
+        name, make, arguments = self.name, self.given, {} if self.given else dict(self.arguments)
         by_name = {action.name: action for action in actions}
-        if name in by_name:
+        if make is None and name in by_name:
             if self.label != name:
                 raise InputError("policy", self.label, "an action takes no arguments")
             return partial(FixedPolicy, within=by_name[name], against=by_name[name])
-        if self.is_user_defined:
-            kind = load_class("policy", name)
-            check_factory(name, kind, arguments)
-            return partial(build_user_policy, name, kind, arguments)
-        if name not in POLICIES:
-            known = ", ".join([*POLICIES, *ALIASES, *by_name])
-            allowed = f"must be one of {known}, or several joined by '+', or a class as my_file.py:MyPolicy"
-            raise InputError("policy", name, allowed)
-        make, known_arguments = POLICIES[name]
-        require_known("policy", self.arguments, known_arguments)
-        if "reward" in known_arguments:
-            arguments = {**LEARNS_BY, **arguments}
-        with InputError.within("policy"):
-            made = {key: _MAKERS[key](value) if key in _MAKERS else value for key, value in arguments.items()}
-        return partial(_build_named, make, made)
+        if make is None and is_reference(name):
+            make = load_class("policy", name)
+        elif make is None:
+            if name not in POLICIES:
+                known = ", ".join([*POLICIES, *ALIASES, *by_name])
+                rule = f"must be one of {known}, or several joined by '+', or a class as my_file.py:MyPolicy"
+                raise InputError("policy", name, rule)
+            make = POLICIES[name]
+        check_factory(name, make, arguments)
+        if not self.is_user_defined:
+            with InputError.within("policy"):
+                for part, text in (LEARNS_BY if self.learns_by("reward") else {}).items():
+                    arguments[part] = _MAKERS[part](arguments.get(part, text))
+        return partial(_build, name if self.is_user_defined else "", make, arguments)
 
     def build(self, setting: Setting) -> Policy:
-        """Build the policy of one robot.
-
-        Raises
-        ------
-        InputError
-            If there is no such policy, or it does not fit the game.
-        """
+        """Build the policy of one robot, see `factory`."""
         return self.factory(setting.actions)(setting)
 
     __call__ = build
 
     def files(self) -> list[Path]:
-        """Return the files that the policy is made of: user-defined code and learned policies.
-
-        These are the files of its class, of the classes that its arguments ``reward`` and ``rule`` name, and
-        the file that its argument ``file`` names.
+        """Return the files of the policy: user-defined code, also of reward and rule, and learned policies.
 
         Raises
         ------
         InputError
-            If the policy has no text, or a file does not exist.
+            If the policy has no text, or a module does not exist.
         """
         name, arguments = self._require_call()
         parts = {part: arguments.get(part) for part in LEARNS_BY}
@@ -169,9 +149,10 @@ class PolicySpec:
         return [*found, Path(file)] if isinstance(file, str) and Path(file).is_file() else found
 
     def learns_by(self, part: str) -> Call | None:
-        """Return the ``reward`` or ``rule`` of a named learner; none for other policies."""
-        kind = POLICIES.get(self.name)
-        if kind is None or part not in kind.arguments:
+        """Return the ``reward`` or ``rule`` of a named learner; None for other policies."""
+        if self.given or self.name not in POLICIES:
+            return None
+        if part not in (parameter.name for parameter in parameters_of(POLICIES[self.name])):
             return None
         return parse_call(part, self.arguments.get(part, LEARNS_BY[part]))
 
@@ -270,6 +251,12 @@ def make_policy(policy: str | Factory, setting: Setting) -> Policy:
     return spec.build(setting)
 
 
-def _build_named(make: Callable[..., Policy], arguments: Mapping[str, Any], setting: Setting) -> Policy:
-    with InputError.within("policy"):
-        return make(setting, **arguments)
+def _build(
+    reference: str, make: Callable[..., Policy], arguments: Mapping[str, Any], setting: Setting
+) -> Policy:
+    """Build a policy. A user-defined one, named by `reference`, has its own copies of the arguments."""
+    if not reference:
+        with InputError.within("policy"):
+            return make(setting, **arguments)
+    with user_errors("policy", reference, "its constructor"), InputError.within("policy"):
+        return make(setting, **copy.deepcopy(dict(arguments)))

@@ -14,7 +14,7 @@ import pytest
 from kswarms.agents.learning.rewards import WLU
 from kswarms.agents.learning.selection_rules import UCB
 from kswarms.agents.policies.learner import Learner
-from kswarms.agents.policies.registry import POLICIES, Kind
+from kswarms.agents.policies.registry import POLICIES
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.description.parameters import PRESETS
 from kswarms.model.game_model import GameModel
@@ -64,7 +64,7 @@ def learned_rows(model: GameModel) -> Iterator[tuple[Any, list[Row]]]:
 @pytest.fixture(scope="module", params=[False, True], ids=["whole actions", "preempt"])
 def spied(request: pytest.FixtureRequest) -> GameModel:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(POLICIES, "spy", Kind(Spy))
+        patch.setitem(POLICIES, "spy", Spy)
         model = GameModel(game("spy", preempt=request.param), seed=3, record="conflicts")
         model.play()
     return model
@@ -120,7 +120,7 @@ def test_a_conflict_has_no_program_time_if_the_next_begins_as_its_action_ends(sp
 @pytest.mark.parametrize("preempt", [False, True])
 def test_times_are_those_seen_from_outside(monkeypatch: pytest.MonkeyPatch, preempt: bool) -> None:
     """T(a): periods in state A from a conflict's start on; T(p): those in state P up to the next one."""
-    monkeypatch.setitem(POLICIES, "spy", Kind(Spy))
+    monkeypatch.setitem(POLICIES, "spy", Spy)
     what = game("spy", preempt=preempt, learning=60.0).replace(sample_period=PERIOD)
     model = GameModel(what, seed=1)
     watched: dict[int, list[list[int]]] = {robot.index: [] for robot in model.members[1]}
