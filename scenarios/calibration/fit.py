@@ -1,12 +1,11 @@
-"""Fits the free parameters of section 2.7 to Table 6.1: CMA-ES on what the robots of Fig. 6.4 learn.
+"""Fit of the free parameters of section 2.7 to Table 6.1 with CMA-ES, by what the robots of Fig. 6.4 learn.
 
-The table is reached by few seeds, so every error is noisy. All points of a generation are measured on the
-same seeds, each generation on seeds of its own, and what is taken in the end is the mean of the search
-distribution, an average over many points, not the point that was luckiest. It is then compared with the
-start values on seeds that the fit has not used.
+Errors are noisy. All candidates of a generation are measured on the same seeds, and each generation has its
+own seeds. The result is the mean of the search distribution, not the luckiest candidate. It is compared with
+the start values on seeds that the fit does not use.
 
-The search is a function of its setup and of the shares measured, so nothing of it is kept but these: to go
-on after an interruption is to search again and to find most games played.
+The search depends only on its setup and on the measured shares. To resume, the search runs again and finds
+most shares in the file.
 """
 
 import math
@@ -14,6 +13,7 @@ from collections.abc import Callable, Generator, Mapping
 from pathlib import Path
 from typing import Any, Final, Self
 
+import cma
 import numpy as np
 from pydantic import Field, model_validator
 
@@ -22,44 +22,45 @@ from kswarms.agents.common.atomic_files import remove_temporary_files
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.statistics.intervals import bootstrap_interval
-from kswarms.scenarios.calibration.games import START, Cell, Play, Point, Shares, texts, to_place, to_point
+from kswarms.scenarios.calibration.games import START, Candidate, Cell, texts_of, to_candidate, to_place
+from kswarms.scenarios.calibration.shares import Play, Shares
 from kswarms.scenarios.description.scenario import DENSITIES
 from kswarms.scenarios.study.directory import make_directory, write_json
 
 SPREAD: Final = 0.15
-"""Standard deviation of the first generation, as a part of the range searched."""
+"""Standard deviation of the first generation, relative to the search range."""
 VALIDATION_SEED: Final = 1000
-"""First seed of the validation; the catalogue's own seeds, from 0, are left to those who judge the result."""
+"""First seed of the validation. The seeds of the catalogue, from 0, stay unused, to judge the result."""
 FIT_SEED: Final = 10_000
 """First seed of the first generation."""
 
 _SHARES: Final = "shares.json"
 TRACE: Final = "calibration.json"
-"""The file that a fit can be read from."""
+"""File of the trace of a fit."""
 
 
 class Setup(Checked):
-    """What is fitted, and to what.
+    """Settings of a fit.
 
     Attributes
     ----------
     free : tuple of str
-        The parameters that are fitted, two at least, of `START`; the others keep their start values.
+        The fitted parameters, at least two of `START`; the others keep their start values.
     densities : tuple of int
-        The rows of Table 6.1 that are fitted, by N.
+        The fitted rows of Table 6.1, by N.
     seeds : int
-        Games for each cell and point.
+        Games for each cell and candidate.
     generations : int
         Generations of the search.
     population : int
-        Points in a generation; 0: 4 + 3 ln(parameters), the usual number.
+        Candidates in a generation; 0 for the usual number, 4 + 3 ln(parameters).
     validation_seeds : int
-        Games for each cell in the validation, 6 at least: fewer have no interval.
+        Games for each cell in the validation, at least 6: fewer have no interval.
 
     Raises
     ------
     InputError
-        If a value is not allowed.
+        If a value is invalid.
     """
 
     free: tuple[str, ...] = tuple(START)
@@ -89,7 +90,7 @@ def error_of(shares: Floats, target: Floats) -> float:
     shares : ndarray of float64, shape (cells, seeds)
         Share of learners that learned to attack.
     target : ndarray of float64, shape (cells,)
-        What the table says (percent).
+        Published shares (percent).
     """
     return float(np.abs(100.0 * shares.mean(axis=1) - target).mean())
 
@@ -102,35 +103,36 @@ def calibrate(
     fresh: bool = False,
     report: Callable[[str], None] = lambda _: None,
 ) -> dict[str, Any]:
-    """Search, validate, and say whether the start values are beaten.
+    """Search, validate, and decide whether the result beats the start values.
 
     Parameters
     ----------
     setup : Setup
-        What is fitted.
+        Settings.
     target : mapping of (str, int) to float
         Table 6.1 (percent).
     play : Play
         Plays runs.
     out : Path
-        Directory of ``shares.json``, from which an interrupted search of the same setup goes on (with more
-        generations too), and ``calibration.json``, what is returned.
+        Directory of ``shares.json``, from which a search of the same setup resumes (also with more
+        generations), and of ``calibration.json``, the returned trace.
     fresh : bool
-        Whether to forget what the directory holds.
+        Whether to delete an earlier fit in the directory.
     report : callable
-        Told a line after each generation.
+        Called with a line of text after each generation.
 
     Returns
     -------
     dict
-        ``setup``; ``start``, the point; ``generations``, each with its ``first_seed``, ``points``, ``errors``
-        (percentage points), and ``mean`` (a point) and ``spread`` of the search after it; ``validation``, as
-        `validate` returns it; ``result``: ``parameters`` and ``rule``, texts, and ``beats_start``.
+        ``setup``; ``start``, a candidate; ``generations``, each with ``first_seed``, ``points`` (candidates),
+        ``errors`` (percentage points), and the ``mean`` (a candidate) and ``spread`` of the search after it;
+        ``validation``, as `validate` returns it; ``result``: the texts ``parameters`` and ``rule``, and
+        ``beats_start``.
 
     Raises
     ------
     InputError
-        If a density is not in the table, or the directory cannot be used.
+        If a density is not in the table, or the directory is not usable.
     """
     rows = sorted({n for _, n in target})
     for n in setup.densities:
@@ -152,7 +154,7 @@ def calibrate(
     seeds = range(VALIDATION_SEED, VALIDATION_SEED + setup.validation_seeds)
     of_start, of_fitted = shares.measure([start, fitted], list(target), seeds)
     trace["validation"] = validate(of_start, of_fitted, np.array(list(target.values())))
-    parameters, rule = texts(fitted)
+    parameters, rule = texts_of(fitted)
     beaten = trace["validation"]["gain_low"] > 0
     trace["result"] = {"parameters": parameters, "rule": rule, "beats_start": beaten}
     write_json(out / TRACE, trace)
@@ -160,25 +162,25 @@ def calibrate(
 
 
 def summary(trace: dict[str, Any]) -> list[str]:
-    """Return in a few lines what came out of a fit, as `calibrate` returns it."""
+    """Return a few lines about the trace of a fit."""
     found, result = trace["validation"], trace["result"]
     seeds = trace["setup"]["validation_seeds"]
     return [
         f"error:      start values {found['start_error']:.2f}, fitted {found['fitted_error']:.2f}"
-        f" (percentage points, {seeds} seeds that were not fitted)",
+        f" (percentage points, {seeds} seeds not used by the fit)",
         f"gain:       {found['gain']:.2f}, 95 % interval {found['gain_low']:.2f} to {found['gain_high']:.2f}",
-        f"start:      {'beaten' if result['beats_start'] else 'not beaten: it is kept'}",
+        f"start:      {'beaten' if result['beats_start'] else 'not beaten; the start values are kept'}",
         f"parameters: {result['parameters']}",
         f"rule:       {result['rule']}",
     ]
 
 
-def _start(setup: Setup) -> Point:
+def _start(setup: Setup) -> Candidate:
     return {name: START[name] for name in setup.free}
 
 
 def _open(setup: Setup, play: Play, out: Path, fresh: bool) -> Shares:
-    """Return the shares that the directory holds, after making sure that it is there and can be written."""
+    """Create the directory and return the shares in it."""
     comparable = setup.model_dump(mode="json", include={"densities", "seeds", "population"})
     comparable["start"] = _start(setup)
     make_directory(out)
@@ -198,8 +200,6 @@ def _search(
     setup: Setup, target: Mapping[Cell, float], shares: Shares
 ) -> Generator[dict[str, Any], None, None]:
     """Yield the generations of the search."""
-    import cma  # here, since it brings matplotlib where that is installed
-
     cells = [cell for cell in target if cell[1] in setup.densities]
     wanted = np.array([target[cell] for cell in cells])
     draws = np.random.default_rng(FIT_SEED)
@@ -213,36 +213,36 @@ def _search(
     for generation in range(setup.generations):
         first_seed = FIT_SEED + generation * setup.seeds
         places = strategy.ask()
-        points = [to_point(setup.free, place) for place in places]
-        measured = shares.measure(points, cells, range(first_seed, first_seed + setup.seeds))
+        candidates = [to_candidate(setup.free, place) for place in places]
+        measured = shares.measure(candidates, cells, range(first_seed, first_seed + setup.seeds))
         errors = [error_of(each, wanted) for each in measured]
         strategy.tell(places, errors)
         yield {
             "first_seed": first_seed,
-            "points": points,
+            "points": candidates,
             "errors": errors,
-            "mean": to_point(setup.free, strategy.result.xfavorite),
+            "mean": to_candidate(setup.free, strategy.result.xfavorite),
             "spread": float(strategy.sigma),
         }
 
 
 def validate(start: Floats, fitted: Floats, target: Floats) -> dict[str, float]:
-    """Compare two points on the same seeds.
+    """Compare two candidates on the same seeds.
 
     Parameters
     ----------
     start, fitted : ndarray of float64, shape (cells, seeds)
         Shares of learners that learned to attack.
     target : ndarray of float64, shape (cells,)
-        What the table says (percent).
+        Published shares (percent).
 
     Returns
     -------
     dict
-        ``start_error``, ``fitted_error``, and ``gain``, the former less the latter, with its 95 % interval
-        ``gain_low``, ``gain_high`` over the seeds (percentage points).
+        ``start_error``, ``fitted_error`` and their difference ``gain`` with its 95 % interval over the seeds,
+        ``gain_low`` to ``gain_high`` (percentage points).
     """
-    both = np.stack([start, fitted]).transpose(2, 0, 1)  # seeds, points, cells
+    both = np.stack([start, fitted]).transpose(2, 0, 1)  # seeds, candidates, cells
 
     def gains(means: Floats) -> Floats:
         errors = np.abs(100.0 * means - target).mean(axis=-1)

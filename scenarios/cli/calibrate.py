@@ -8,7 +8,6 @@ from typing import Annotated, Any
 
 import typer
 
-from kswarms.scenarios.calibration import fit
 from kswarms.scenarios.catalogue.selecting import integers, words
 from kswarms.scenarios.cli.options import CPUS, Jobs, parse_directory
 from kswarms.scenarios.cli.progress import track
@@ -29,10 +28,10 @@ def calibrate(
             metavar="N,N,...", help="Rows of Table 6.1 to fit: 6,10,16,20,26,30,36,40,46,50. [default: all]"
         ),
     ] = None,
-    seeds: Annotated[int, typer.Option(help="Games for each cell of the table and point, at least 1.")] = 4,
+    seeds: Annotated[int, typer.Option(help="Games for each cell of the table and candidate, at least 1.")] = 4,
     generations: Annotated[int, typer.Option(help="Generations of the search, at least 1.")] = 25,
     population: Annotated[
-        int, typer.Option(help="Points in a generation, at least 4; 0 for the usual number.")
+        int, typer.Option(help="Candidates in a generation, at least 4; 0 for the usual number.")
     ] = 0,
     validation_seeds: Annotated[
         int, typer.Option(help="Games for each cell in the validation, at least 6.")
@@ -51,6 +50,7 @@ def calibrate(
     Example: kswarms calibrate --free friction,gamma --densities 16,30,50 --seeds 2
     """
     from kswarms.analysis.results.published import table_6_1
+    from kswarms.scenarios.calibration import fit
 
     options: dict[str, Any] = {"seeds": seeds, "generations": generations, "population": population}
     if free is not None:

@@ -1,4 +1,4 @@
-"""`kswarms calibrate` on real games of few robots, and on stubbed ones when its process is killed."""
+"""`kswarms calibrate` on games of few robots, and on made-up games when its process is killed."""
 
 import json
 import subprocess
@@ -17,16 +17,15 @@ TINY = [
     *("--population", "4", "--validation-seeds", "6"),
 ]
 
-# A fit of stubbed games whose process kills itself after so many of them, with what it measured saved or not.
+# A fit of made-up games whose process kills itself after some games.
 FIT = """
 import math, os, signal, sys
 from pathlib import Path
 from kswarms.analysis.results import published
-from kswarms.scenarios.calibration import games as calibration_games
-from kswarms.analysis.results import published
+from kswarms.scenarios.calibration import shares
 from kswarms.scenarios.calibration.fit import Setup, calibrate
 
-calibration_games._SAVE_EVERY = float(sys.argv[3])
+shares._SAVE_EVERY = float(sys.argv[3])
 games = 0
 
 def play(runs):
@@ -44,7 +43,7 @@ calibrate(setup, {("avoid", 6): 2.0, ("attack", 6): 0.0}, play, Path(sys.argv[1]
 
 @pytest.fixture
 def one_row(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let Table 6.1 have its first row alone, so that a validation takes seconds."""
+    """Reduce Table 6.1 to its first row, so that a validation takes seconds."""
     table = published.table_6_1().head(1)
     monkeypatch.setattr(published, "table_6_1", lambda: table.copy())
 
@@ -54,17 +53,17 @@ def _fit(out: str, games: int, save_every: float = 0.0) -> int:
 
 
 @pytest.mark.slow
-def test_a_killed_fit_goes_on_and_leaves_the_trace_of_an_undisturbed_one() -> None:
+def test_a_killed_and_resumed_fit_has_the_trace_of_an_undisturbed_one() -> None:
     assert _fit("whole", 10_000) == 0
     assert _fit("parts", 5) == -9
-    assert _fit("parts", 9, save_every=1000.0) == -9  # these games are lost, and played again
+    assert _fit("parts", 9, save_every=1000.0) == -9  # these games are not saved, and are played again
     assert _fit("parts", 10_000) == 0
     assert Path("parts/calibration.json").read_bytes() == Path("whole/calibration.json").read_bytes()
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("one_row")
-def test_calibrate_plays_says_what_it_found_and_does_not_play_again(
+def test_calibrate_prints_its_result_and_plays_no_game_twice(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert invoke([*TINY, "--jobs", "1"]) == 0
@@ -78,7 +77,7 @@ def test_calibrate_plays_says_what_it_found_and_does_not_play_again(
     assert all(0 <= error <= 100 for generation in trace["generations"] for error in generation["errors"])
     assert "generation 2 of 2: errors" in printed.err
 
-    monkeypatch.setattr("kswarms.scenarios.runs.sweep.play_all", None)  # to be called would be an error
+    monkeypatch.setattr("kswarms.scenarios.runs.sweep.play_all", None)  # calling it would fail
     assert invoke(TINY) == 0
     assert capsys.readouterr().out == printed.out
 

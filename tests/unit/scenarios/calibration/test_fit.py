@@ -1,4 +1,4 @@
-"""The calibration on games of known outcome: what it finds, what it claims, how it is interrupted."""
+"""Calibration on made-up games: result, validation, interruption."""
 
 import json
 import math
@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from kswarms.agents.common.errors import InputError
 from kswarms.model.description.parameters import parse_parameters
-from kswarms.scenarios.calibration import games as calibration_games
+from kswarms.scenarios.calibration import shares as shares_module
 from kswarms.scenarios.calibration.fit import Setup, calibrate, error_of, validate
-from kswarms.scenarios.calibration.games import START, learning_game, texts, to_place, to_point
+from kswarms.scenarios.calibration.games import START, learning_game, texts_of, to_candidate, to_place
 from kswarms.scenarios.runs.run import Run
 
 TARGET = {("avoid", 6): 10.0, ("avoid", 30): 60.0, ("attack", 6): 2.0, ("attack", 30): 30.0}
@@ -25,7 +25,7 @@ Played = Generator[tuple[Run, float], None, None]
 
 
 def share(run: Run, friction: float, distance: float = START["conflict_distance"]) -> float:
-    """Return a share that meets the table where friction and conflict distance have these values."""
+    """Return a share that equals the table if friction and conflict distance have these values."""
     opponent, n = run.game.swarms[0].policy, run.n
     world = run.game.parameters
     off = abs(math.log(world.friction / friction)) + abs(math.log(world.conflict_distance / distance))
@@ -34,7 +34,7 @@ def share(run: Run, friction: float, distance: float = START["conflict_distance"
 
 
 class Table:
-    """Plays as `share` says, notes the runs, and stops with an error when it has played so many."""
+    """Returns made-up shares, notes the runs, and is interrupted after some runs."""
 
     def __init__(self, stop_after: float = math.inf, backwards: bool = False, **truth: float) -> None:
         self.runs: list[Run] = []
@@ -54,12 +54,12 @@ def trace_of(out: Path) -> dict[str, Any]:
     return trace
 
 
-def test_the_error_is_that_of_the_means_over_seeds() -> None:
+def test_the_error_compares_means_over_seeds() -> None:
     shares = np.array([[0.1, 0.3], [0.5, 0.5], [1.0, 0.0]])
     assert error_of(shares, np.array([10.0, 65.0, 50.0])) == pytest.approx((10 + 15 + 0) / 3)
 
 
-def test_the_search_finds_what_the_table_was_made_with(tmp_path: Path) -> None:
+def test_the_search_finds_the_values_behind_the_table(tmp_path: Path) -> None:
     setup = Setup(free=("friction", "conflict_distance", "gamma"), densities=(6, 30), seeds=2, generations=30)
     table = Table(friction=0.27, distance=0.1)
     trace = calibrate(setup, TARGET, table, tmp_path)
@@ -81,7 +81,7 @@ def test_the_start_values_are_kept_if_they_are_the_best(tmp_path: Path) -> None:
     assert trace["result"]["beats_start"] is False
 
 
-def test_a_table_that_does_not_depend_on_the_parameters_decides_nothing(tmp_path: Path) -> None:
+def test_without_any_effect_the_gain_is_zero(tmp_path: Path) -> None:
     def flat(runs: Sequence[Run]) -> Played:
         yield from ((run, 0.25) for run in runs)
 
@@ -89,7 +89,7 @@ def test_a_table_that_does_not_depend_on_the_parameters_decides_nothing(tmp_path
     assert (validation["gain"], validation["gain_low"], validation["gain_high"]) == (0, 0, 0)
 
 
-def test_points_of_a_generation_share_seeds_that_no_other_has(tmp_path: Path) -> None:
+def test_candidates_of_a_generation_share_seeds_of_their_own(tmp_path: Path) -> None:
     table = Table()
     calibrate(TINY, TARGET, table, tmp_path)
     seeds = [run.seed for run in table.runs]
@@ -100,7 +100,7 @@ def test_points_of_a_generation_share_seeds_that_no_other_has(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("games", [0, 1, 5, 8, 17, 24, 30])
-def test_an_interrupted_fit_goes_on_as_if_nothing_had_happened(games: int, tmp_path: Path) -> None:
+def test_a_resumed_fit_equals_an_uninterrupted_one(games: int, tmp_path: Path) -> None:
     whole, before, after = Table(), Table(stop_after=games), Table(backwards=True)
     trace = calibrate(TINY, TARGET, whole, tmp_path / "whole")
     with pytest.raises(KeyboardInterrupt):
@@ -111,15 +111,15 @@ def test_an_interrupted_fit_goes_on_as_if_nothing_had_happened(games: int, tmp_p
     assert sorted(played) == sorted(run.digest for run in whole.runs)  # each once
 
 
-def test_what_a_killed_fit_left_is_removed_when_it_goes_on(tmp_path: Path) -> None:
+def test_temporary_files_of_a_killed_fit_are_removed(tmp_path: Path) -> None:
     for name in ("shares.json", "calibration.json"):
-        (tmp_path / f".unfinished-99999999-{name}").write_text("{")  # no process has this number
+        (tmp_path / f".unfinished-99999999-{name}").write_text("{")  # not the id of a process
     with pytest.raises(KeyboardInterrupt):
         calibrate(TINY, TARGET, Table(stop_after=0), tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["shares.json"]
 
 
-def test_more_generations_go_on_from_fewer(tmp_path: Path) -> None:
+def test_a_fit_can_be_extended_by_more_generations(tmp_path: Path) -> None:
     calibrate(TINY, TARGET, Table(), tmp_path / "grown")
     more = TINY.replace(generations=5)
     assert calibrate(more, TARGET, Table(), tmp_path / "grown") == calibrate(
@@ -147,7 +147,7 @@ def test_another_setup_needs_another_directory_or_a_fresh_start(tmp_path: Path) 
 
 
 @pytest.mark.parametrize("content", ["", "[]", "3", '{"setup": {}}', '{"setup": 1, "shares": {}}'])
-def test_a_file_that_is_none_of_ours_is_refused_and_kept(content: str, tmp_path: Path) -> None:
+def test_a_foreign_file_is_refused_and_kept(content: str, tmp_path: Path) -> None:
     (tmp_path / "shares.json").write_text(content)
     with pytest.raises(InputError, match=r"holds a shares\.json of something else"):
         calibrate(TINY, TARGET, Table(), tmp_path)
@@ -172,13 +172,13 @@ def test_a_file_that_is_none_of_ours_is_refused_and_kept(content: str, tmp_path:
         ({"budget": 3}, "budget=3: no such field"),
     ],
 )
-def test_a_setup_that_cannot_be_is_refused(change: dict[str, object], complaint: str) -> None:
+def test_an_invalid_setup_is_refused(change: dict[str, object], complaint: str) -> None:
     with pytest.raises(InputError) as caught:
         TINY.replace(**change)
     assert str(caught.value).startswith(complaint)
 
 
-def test_only_rows_of_the_table_and_a_directory_will_do(tmp_path: Path) -> None:
+def test_densities_must_be_in_the_table_and_out_a_directory(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"densities=8: must be among 6, 30"):
         calibrate(TINY.replace(densities=(6, 8)), TARGET, Table(), tmp_path / "out")
     assert not (tmp_path / "out").exists()
@@ -191,12 +191,12 @@ def _fail(*_: object) -> None:
     raise OSError("disk full")
 
 
-def test_long_portions_are_saved_on_the_way(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_shares_are_saved_during_long_generations(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     saved: list[int] = []
     clock: Iterator[float] = iter(range(0, 10_000, 3))
-    monkeypatch.setattr(calibration_games.time, "monotonic", lambda: float(next(clock)))
+    monkeypatch.setattr(shares_module.time, "monotonic", lambda: float(next(clock)))
     monkeypatch.setattr(
-        calibration_games, "write_json", lambda _, content: saved.append(len(content.get("shares", ())))
+        shares_module, "write_json", lambda _, content: saved.append(len(content.get("shares", ())))
     )
     with pytest.raises(KeyboardInterrupt):
         calibrate(TINY, TARGET, Table(stop_after=7), tmp_path)
@@ -208,7 +208,7 @@ def _shares(seed: int, mean: float) -> NDArray[np.float64]:
 
 
 @pytest.mark.parametrize(("fitted", "beaten"), [(0.52, True), (0.60, False), (0.70, False)])
-def test_the_interval_tells_a_gain_from_luck(fitted: float, beaten: bool) -> None:
+def test_the_interval_distinguishes_a_gain_from_chance(fitted: float, beaten: bool) -> None:
     found = validate(_shares(1, 0.60), _shares(2, fitted), np.full(20, 50.0))
     assert found["start_error"] - found["fitted_error"] == pytest.approx(found["gain"])
     assert found["gain_low"] <= found["gain"] <= found["gain_high"]
@@ -216,7 +216,7 @@ def test_the_interval_tells_a_gain_from_luck(fitted: float, beaten: bool) -> Non
     assert (found["gain_low"] > 0) is beaten
 
 
-def test_noise_that_both_points_share_does_not_widen_the_interval() -> None:
+def test_noise_common_to_both_candidates_does_not_widen_the_interval() -> None:
     noise = _shares(1, 0.0)
     found = validate(noise + 0.9, noise + 0.8, np.full(20, 50.0))
     assert found["gain_low"] == pytest.approx(10)
@@ -225,8 +225,8 @@ def test_noise_that_both_points_share_does_not_widen_the_interval() -> None:
 
 @pytest.mark.parametrize("end", [0.0, 1.0])
 @pytest.mark.parametrize("name", list(START))
-def test_the_whole_range_of_each_parameter_can_be_played(name: str, end: float) -> None:
-    point = to_point([name], np.array([end]))
+def test_both_ends_of_each_range_are_valid_games(name: str, end: float) -> None:
+    point = to_candidate([name], np.array([end]))
     lowest = pytest.approx(START[name] / 2, rel=1e-3)
     assert point[name] == lowest if end == 0 else point[name] > START[name]
     game = learning_game(("attack", 50), point)
@@ -237,15 +237,15 @@ def test_the_whole_range_of_each_parameter_can_be_played(name: str, end: float) 
         assert getattr(game.parameters, name) == point[name]
 
 
-def test_the_start_is_the_default_to_the_last_digit() -> None:
-    parameters, rule = texts(START)
+def test_the_start_values_are_the_defaults() -> None:
+    parameters, rule = texts_of(START)
     assert parse_parameters(parameters) == parse_parameters("fitted")
     assert rule == f"ucb(gamma={START['gamma']})"
-    again = to_point(list(START), to_place(START))
+    again = to_candidate(list(START), to_place(START))
     assert again == {name: float(f"{value:.4g}") for name, value in START.items()}
 
 
-def test_all_parameters_are_searched_together_even_from_the_edge(tmp_path: Path) -> None:
+def test_all_parameters_can_be_searched_together(tmp_path: Path) -> None:
     setup = Setup(densities=(6,), seeds=1, generations=2, validation_seeds=6)
     trace = calibrate(setup, TARGET, Table(), tmp_path)
     assert len(trace["start"]) == 16
