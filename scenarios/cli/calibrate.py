@@ -28,7 +28,7 @@ def calibrate(
             metavar="N,N,...", help="Rows of Table 6.1 to fit: 6,10,16,20,26,30,36,40,46,50. [default: all]"
         ),
     ] = None,
-    seeds: Annotated[int, typer.Option(help="Games for each cell of the table and candidate, at least 1.")] = 4,
+    seeds: Annotated[int, typer.Option(help="Games for each cell and candidate, at least 1.")] = 4,
     generations: Annotated[int, typer.Option(help="Generations of the search, at least 1.")] = 25,
     population: Annotated[
         int, typer.Option(help="Candidates in a generation, at least 4; 0 for the usual number.")
