@@ -23,7 +23,7 @@ TRIES: Final = 3
 """A run is failed when its worker died this many times while it was played alone."""
 
 _NO_START: Final = 'needs worker processes, and none started: is `if __name__ == "__main__"` missing?'
-_DEATHS: Final = f"its worker process died {TRIES} times: killed or out of memory?"
+_DEATHS: Final = "its worker process died {} times: killed or out of memory?"
 
 
 def play_in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[Result, None, None]:
@@ -57,7 +57,7 @@ def play_in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[
                 if deaths[run.digest] < TRIES:
                     suspects.appendleft(run)
                 else:
-                    yield run, Failure(_DEATHS), 0.0
+                    yield run, Failure(_DEATHS.format(TRIES)), 0.0
         if not alone:
             waiting.extendleft(reversed(batch))
 

@@ -3,8 +3,8 @@
 import signal
 
 
-def heed_interrupts() -> None:
-    """Let a child process hear Ctrl-C, to which a background job of a shell and its children are deaf.
+def accept_interrupts() -> None:
+    """Restore the default handling of Ctrl-C, which background jobs of a shell and their children ignore.
 
     For the argument ``preexec_fn`` of `subprocess.Popen`.
     """

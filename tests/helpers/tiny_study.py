@@ -1,4 +1,4 @@
-"""A study of games of two seconds, and what tests of studies ask of it."""
+"""A study of games of two seconds, and helpers to read it."""
 
 import json
 from collections.abc import Callable
@@ -25,21 +25,23 @@ TINY = Scenario(
         ),
     ),
 )
-RUN = ["run", "tiny.toml", "--jobs", "1", "--quiet", "--no-figures", "--record", "robots"]
+PLAIN_RUN = ["run", "tiny.toml", "--jobs", "1", "--quiet", "--no-figures"]
+RUN = [*PLAIN_RUN, "--record", "robots"]
 TABLES = ("runs.parquet", "policies.parquet", "robots.parquet")
 
 Fault = Callable[[GameModel], None]
 
 
-def contents(directory: str) -> list[bytes]:
+def read_tables(directory: str) -> list[bytes]:
     return [Path(directory, name).read_bytes() for name in TABLES]
 
 
-def undisturbed() -> list[bytes]:
+def uninterrupted_tables() -> list[bytes]:
+    """Play the whole study, and return its tables."""
     assert invoke([*RUN, "--out", "whole"]) == 0
-    return contents("whole")
+    return read_tables("whole")
 
 
-def sessions(directory: str) -> list[dict[str, Any]]:
+def read_sessions(directory: str = "results") -> list[dict[str, Any]]:
     found: list[dict[str, Any]] = json.loads(Path(directory, "manifest.json").read_text())["sessions"]
     return found

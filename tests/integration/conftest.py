@@ -1,4 +1,4 @@
-"""Fixtures of several files: an empty directory, a tiny study, broken games, a page."""
+"""Fixtures of several files: an empty directory, a tiny study, games that fail, a page."""
 
 import os
 import sys
@@ -13,29 +13,30 @@ from tests.helpers.tiny_study import TINY, Fault
 
 
 @pytest.fixture
-def empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Run a test in an empty directory; other processes still find the package."""
+def empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Change to an empty directory, in which child processes still import this package."""
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(path or str(Path.cwd()) for path in sys.path))
     monkeypatch.chdir(tmp_path)
+    return tmp_path
 
 
 @pytest.fixture
-def with_a_file_of_scenarios(empty_directory: None) -> None:
-    """Run a test in a directory that has a file of scenarios only."""
-    Path("tiny.toml").write_text(TINY.to_toml())
+def tiny_file(empty_directory: Path) -> None:
+    """Write the tiny scenario to a file of a directory of its own."""
+    (empty_directory / "tiny.toml").write_text(TINY.to_toml())
 
 
 @pytest.fixture
-def break_games(monkeypatch: pytest.MonkeyPatch) -> Callable[[Fault], None]:
-    """Return a function that installs a fault before each game."""
+def before_games(monkeypatch: pytest.MonkeyPatch) -> Callable[[Fault], None]:
+    """Return a function that has another called before each game."""
     real = GameModel.play
 
     def install(fault: Fault) -> None:
-        def broken(model: GameModel) -> None:
+        def play(model: GameModel) -> None:
             fault(model)
             real(model)
 
-        monkeypatch.setattr(GameModel, "play", broken)
+        monkeypatch.setattr(GameModel, "play", play)
 
     return install
 

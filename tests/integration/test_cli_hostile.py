@@ -1,13 +1,11 @@
 """The command line against odd numbers, odd titles and damaged results: one line, and nothing lost."""
 
 import re
-import sqlite3
 from pathlib import Path
 
 import pytest
 
 from kswarms.scenarios.cli import invoke
-from kswarms.scenarios.study.database import LEDGER_FILE
 
 pytestmark = pytest.mark.usefixtures("empty_directory")
 
@@ -112,27 +110,3 @@ def test_a_film_is_called_by_its_curve_and_stays_in_its_directory() -> None:
     Path("mine.toml").write_text(SCENARIO.replace("TITLE", "../../a/b"))
     assert invoke(["film", "mine.toml", "--sheet", "1", "--to", "1"]) == 0
     assert {path.name for path in Path.cwd().iterdir()} == {"mine.toml", "mine-..-..-a-b-n6-seed0.png"}
-
-
-@pytest.mark.parametrize(
-    "statement",
-    [
-        "UPDATE runs SET swarms = 'nonsense'",
-        "UPDATE runs SET swarms = '[{}]'",
-        "UPDATE records SET rows = x'00'",
-        "UPDATE sessions SET about = 'nonsense'",
-    ],
-)
-def test_a_damaged_ledger_is_told_in_a_line_and_the_tables_stay_as_they_were(
-    statement: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    command = ["run", "fig-6.1a", *QUICK, "--no-figures", "--record", "robots"]
-    assert invoke(command) == 0
-    before = Path("results", "runs.parquet").read_bytes()
-    with sqlite3.connect(Path("results", LEDGER_FILE)) as ledger:
-        ledger.execute(statement)
-    ledger.close()
-    assert invoke(command) == 1
-    (line,) = capsys.readouterr().err.splitlines()
-    assert "ledger.sqlite: is damaged (" in line
-    assert Path("results", "runs.parquet").read_bytes() == before

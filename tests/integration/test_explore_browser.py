@@ -16,7 +16,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from kswarms.scenarios.cli import invoke
-from tests.helpers.interrupts import heed_interrupts
+from tests.helpers.interrupts import accept_interrupts
 
 pytest.importorskip("solara", reason="needs the extra `explore`")
 webdriver = pytest.importorskip("selenium.webdriver", reason="needs selenium, of the extra `test`")
@@ -47,7 +47,7 @@ def served(*arguments: str) -> Iterator[str]:
         stderr=subprocess.PIPE,
         text=True,
         env=environment,
-        preexec_fn=heed_interrupts,
+        preexec_fn=accept_interrupts,
     )
     assert server.stdout is not None
     assert server.stderr is not None

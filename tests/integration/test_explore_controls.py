@@ -32,9 +32,7 @@ def test_learning_can_be_skipped_and_its_controls_change_it(show: Callable[[str]
     assert session.player.game.swarms[1].policy == "inter-learner(reward='individual', rule='greedy')"
 
 
-def test_a_value_between_two_steps_of_a_slider_is_kept(
-    show: Callable[[str], Shown], tmp_path: Path
-) -> None:
+def test_a_value_between_two_steps_of_a_slider_is_kept(show: Callable[[str], Shown], tmp_path: Path) -> None:
     (tmp_path / "off.toml").write_text(
         """
         id = "off"

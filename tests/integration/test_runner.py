@@ -1,4 +1,4 @@
-"""Runs played here and in worker processes: same outcomes, failures with names, nothing left behind."""
+"""Runs played in this process, in worker processes and through executors: equal results, named failures."""
 
 import gc
 import os
@@ -8,7 +8,7 @@ import subprocess
 import sys
 import time
 import weakref
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor
 from contextlib import closing
 from multiprocessing import active_children
@@ -20,8 +20,8 @@ import pytest
 from kswarms.agents.common.columns import RECORDED_TABLES
 from kswarms.model.game_model import GameModel
 from kswarms.scenarios.catalogue import CATALOGUE
-from kswarms.scenarios.runs import processes as workers
-from kswarms.scenarios.runs.outcome import Failure, Outcome, RunError
+from kswarms.scenarios.runs import processes
+from kswarms.scenarios.runs.outcome import Failure, Outcome, Result, RunError
 from kswarms.scenarios.runs.play import attempt, play
 from kswarms.scenarios.runs.run import Run, expand
 from kswarms.scenarios.runs.sweep import play_all, sweep
@@ -31,11 +31,11 @@ from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.runs.sweep import play_all
 from kswarms.scenarios.runs.run import expand
 """
-"""With which the scripts of these tests begin."""
+"""Start of the scripts of these tests."""
 
 
-def short(name: str, densities: tuple[int, ...] = (6, 10), seeds: int = 2) -> list[Run]:
-    """Return runs of a scenario with games of 20 s, after as much learning if there is any."""
+def short_runs(name: str, densities: tuple[int, ...] = (6, 10), seeds: int = 2) -> list[Run]:
+    """Return runs of a scenario, shortened to games of 20 s and at most as much learning."""
     scenario = CATALOGUE[name].replace(densities=densities, seeds=seeds)
     conditions = tuple(
         condition.replace(duration=20.0, learning=min(20.0, condition.learning))
@@ -44,8 +44,13 @@ def short(name: str, densities: tuple[int, ...] = (6, 10), seeds: int = 2) -> li
     return expand([scenario.replace(conditions=conditions)])
 
 
-def by_name(played: Iterable[tuple[Run, Outcome]]) -> dict[str, Outcome]:
-    return {run.digest: outcome for run, outcome in played}
+def failing_run(run: Run) -> Run:
+    """Return a run whose seed is not allowed."""
+    return Run("bad", run.game, -1, run.labels)
+
+
+def by_digest(results: Iterable[Result]) -> dict[str, Outcome | Failure]:
+    return {run.digest: result for run, result, _ in results}
 
 
 class Deadly(Run):
@@ -61,32 +66,11 @@ class Deadly(Run):
         return os._exit, (1,)
 
 
-@pytest.mark.slow
-def test_workers_and_order_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(workers, "GAMES_PER_WORKER", 3)  # so that workers are replaced on the way
-    runs = short("fig-6.1c") + short("fig-6.4a", (6,)) + short("fig-6.15", (7,), seeds=1)
-    record = ",".join(RECORDED_TABLES)
-    here = by_name(play_all(runs, 1, record))
-    shuffled = random.Random(3).sample(runs, len(runs))
-    there = by_name(play_all(shuffled, 2, record))
-    assert here.keys() == there.keys() == {run.digest for run in runs}
-    # As text: a reward that is not known is NaN, which equals nothing.
-    assert repr(sorted(here.items())) == repr(sorted(there.items()))
-    assert active_children() == []
+# One run.
 
 
-def test_other_seeds_give_other_outcomes() -> None:
-    first, second = short("fig-6.1c", densities=(10,))
-    assert play(first).swarms != play(second).swarms
-
-
-def test_the_longest_runs_come_first() -> None:
-    runs = short("fig-6.1a", densities=(6, 20, 10), seeds=1)
-    assert [run.n for run, _ in play_all(runs)] == [20, 10, 6]
-
-
-def test_an_outcome_has_a_row_for_each_swarm_and_the_records_asked_for() -> None:
-    run = short("fig-7.10", densities=(6,), seeds=1)[-1]
+def test_an_outcome_has_a_row_for_each_swarm_and_the_requested_records() -> None:
+    run = short_runs("fig-7.10", densities=(6,), seeds=1)[-1]
     assert run.labels == (("fig-7.10", "avoid"),)
     outcome = play(run, "robots,conflicts")
     assert [(row["swarm"], row["size"], row["policy"]) for row in outcome.swarms] == [
@@ -99,21 +83,17 @@ def test_an_outcome_has_a_row_for_each_swarm_and_the_records_asked_for() -> None
     assert play(run).records == {}
 
 
-def test_an_outcome_says_what_was_learned_of_whom() -> None:
-    run = short("fig-7.10", densities=(16,), seeds=1)[0]
+def test_an_outcome_has_what_each_swarm_learned_about_each_opponent() -> None:
+    run = short_runs("fig-7.10", densities=(16,), seeds=1)[0]
     outcome = play(run, "robots")
     assert [(row["swarm"], row["opponent"], row["action"]) for row in outcome.policies] == [
-        (2, 1, "flight"),
-        (2, 1, "fight"),
-        (2, 3, "flight"),
-        (2, 3, "fight"),
+        (2, opponent, action) for opponent in (1, 3) for action in ("flight", "fight")
     ]
     for opponent in (1, 3):
         flight, fight = (row for row in outcome.policies if row["opponent"] == opponent)
         assert flight["share"] + fight["share"] == 1
         assert flight["attack_share"] == fight["attack_share"] == fight["share"]
-    arms = outcome.records["robots"]["arms"]
-    assert [len(of_robot) for of_robot in arms] == [0] * 4 + [4] * 8 + [0] * 4
+    assert [len(arms) for arms in outcome.records["robots"]["arms"]] == [0] * 4 + [4] * 8 + [0] * 4
 
 
 def test_a_model_is_freed_after_its_run(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -125,90 +105,115 @@ def test_a_model_is_freed_after_its_run(monkeypatch: pytest.MonkeyPatch) -> None
         real(self)
 
     monkeypatch.setattr(GameModel, "play", watched)
-    kept_by_mesa = len(mesa.Agent._ids)
-    for run in short("fig-6.1a", densities=(6,), seeds=2):
+    registered = len(mesa.Agent._ids)
+    for run in short_runs("fig-6.1a", densities=(6,), seeds=2):
         play(run)
-    assert len(mesa.Agent._ids) == kept_by_mesa
+    assert len(mesa.Agent._ids) == registered
     gc.collect()
     assert [model() for model in models] == [None, None]
 
 
-@pytest.mark.parametrize("jobs", [1, pytest.param(2, marks=pytest.mark.slow)])
-def test_a_failing_run_is_named(jobs: int) -> None:
-    good = short("fig-6.15", densities=(6,), seeds=1)
-    bad = [Run("bad", run.game, -1, run.labels) for run in good if run.labels[0][1] == "fight-1000ms"]
-    with pytest.raises(RunError) as failure:
-        list(play_all(bad + good, jobs))
+def test_a_worker_with_other_code_plays_nothing() -> None:
+    (run,) = short_runs("fig-6.1a", densities=(6,), seeds=1)
+    failure, seconds = attempt(run, "", "0.0.1 0123456789ab")
+    assert isinstance(failure, Failure)
+    assert failure.error.endswith(", it must have 0.0.1 0123456789ab")
+    assert seconds == 0
+
+
+# Many runs.
+
+
+def test_seeds_give_different_outcomes_and_longer_runs_are_played_first() -> None:
+    played = list(play_all(short_runs("fig-6.1a", densities=(6, 20, 10))))
+    assert [run.n for run, _ in played] == [20, 20, 10, 10, 6, 6]
+    assert played[0][1].swarms != played[1][1].swarms
+
+
+def test_the_error_of_play_all_names_the_run() -> None:
+    runs = short_runs("fig-6.15", densities=(6,), seeds=1)
+    bad = [failing_run(run) for run in runs if run.labels[0][1] == "fight-1000ms"]
+    with pytest.raises(RunError) as error:
+        list(play_all(bad + runs))
     named = "run scenario='fig-6.15' condition='fight-1000ms' n=6 seed=-1 failed: "
-    assert str(failure.value).startswith(named + "InputError: seed=-1")
-    assert "in finished_game\n" in failure.value.trace
+    assert str(error.value).startswith(named + "InputError: seed=-1")
+    assert "in finished_game\n" in error.value.trace
+
+
+@pytest.mark.slow
+def test_results_do_not_depend_on_workers_and_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(processes, "GAMES_PER_WORKER", 3)  # replace the workers during the sweep
+    runs = short_runs("fig-6.1c") + short_runs("fig-6.4a", (6,)) + short_runs("fig-6.15", (7,), seeds=1)
+    runs.append(failing_run(runs[0]))
+    record = ",".join(RECORDED_TABLES)
+    here = by_digest(sweep(runs, 1, record))
+    there = by_digest(sweep(random.Random(3).sample(runs, len(runs)), 2, record))
+    assert here.keys() == there.keys() == {run.digest for run in runs}
+    assert repr(sorted(here.items())) == repr(sorted(there.items()))  # as text, since NaN is unequal to NaN
     assert active_children() == []
 
 
 @pytest.mark.slow
-def test_a_run_that_kills_its_worker_is_tried_again_and_then_failed_and_no_other_is_lost() -> None:
-    runs = short("fig-6.1a", seeds=5)
-    came = {run.digest: result for run, result, _ in sweep([Deadly(), *runs], 2)}
-    failure = came.pop("dead")
-    assert failure == Failure("its worker process died 3 times: killed or out of memory?")
-    assert came == by_name(play_all(runs))
+def test_a_run_that_kills_its_worker_fails_after_retries_and_no_other_is_lost(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(processes, "TRIES", 2)
+    runs = short_runs("fig-6.1a", seeds=5)
+    results = by_digest(sweep([Deadly(), *runs], 2))
+    assert results.pop("dead") == Failure("its worker process died 2 times: killed or out of memory?")
+    assert results == by_digest(sweep(runs))
     assert active_children() == []
 
 
 @pytest.mark.slow
-def test_a_worker_that_is_killed_loses_nothing() -> None:
-    runs = short("fig-6.1a", seeds=30)
-    came = {}
+def test_no_run_is_lost_when_a_worker_is_killed() -> None:
+    runs = short_runs("fig-6.1a", seeds=30)
+    results = {}
     with closing(sweep(runs, 2)) as played:
         for run, result, _ in played:
-            came[run.digest] = result
-            if len(came) == 10:
+            results[run.digest] = result
+            if len(results) == 10:
                 os.kill(active_children()[0].pid or 0, signal.SIGKILL)
-    assert came == by_name(play_all(runs))
+    assert results == by_digest(sweep(runs))
 
 
 @pytest.mark.slow
-def test_ctrl_c_is_left_to_the_parent() -> None:
-    mask_before = signal.pthread_sigmask(signal.SIG_BLOCK, [])
-    with closing(play_all(short("fig-6.1a", seeds=8), 2)) as played:
-        next(played)
-        children = active_children()
-        assert len(children) == 2
-        for worker in children:
-            status = Path(f"/proc/{worker.pid}/status").read_text()
-            blocked = int(status.partition("SigBlk:")[2].split()[0], 16)
-            assert blocked >> (signal.SIGINT - 1) & 1
-    assert signal.pthread_sigmask(signal.SIG_BLOCK, []) == mask_before
-
-
-@pytest.mark.slow
-def test_whoever_stops_listening_stops_the_workers() -> None:
-    (quick,) = short("fig-6.1a", densities=(6,), seeds=1)
+def test_workers_ignore_ctrl_c_and_stop_when_the_sweep_is_closed() -> None:
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, [])
+    (quick,) = short_runs("fig-6.1a", densities=(6,), seeds=1)
     endless = Run("endless", quick.game.replace(duration=1e6), 0, quick.labels)
     played = play_all([quick, endless], 2)
     assert next(played)[0] == quick
+    assert signal.pthread_sigmask(signal.SIG_BLOCK, []) == mask
+    children = active_children()
+    assert len(children) == 2
+    for worker in children:
+        status = Path(f"/proc/{worker.pid}/status").read_text()
+        blocked = int(status.partition("SigBlk:")[2].split()[0], 16)
+        assert blocked >> (signal.SIGINT - 1) & 1
     started = time.monotonic()
     played.close()
     assert active_children() == []
     assert time.monotonic() - started < 5
 
 
+# Scripts.
+
+
 @pytest.mark.slow
-def test_a_script_that_each_worker_would_run_anew_is_told_so(tmp_path: Path) -> None:
+def test_a_script_without_a_main_guard_is_refused(tmp_path: Path) -> None:
     script = tmp_path / "unguarded.py"
     script.write_text(
         f"{IMPORTS}list(play_all(expand([CATALOGUE['fig-6.1a'].replace(densities=(6,), seeds=3)]), 2))\n"
     )
     done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 1
-    *_, last = done.stderr.splitlines()
-    assert last.endswith(
-        'jobs=2: needs worker processes, and none started: is `if __name__ == "__main__"` missing?'
-    )
+    reason = 'needs worker processes, and none started: is `if __name__ == "__main__"` missing?'
+    assert done.stderr.splitlines()[-1].endswith(f"InputError: jobs=2: {reason}")
 
 
 @pytest.mark.slow
-def test_workers_end_with_their_parent_even_if_it_is_killed(tmp_path: Path) -> None:
+def test_workers_exit_when_their_parent_is_killed(tmp_path: Path) -> None:
     script = tmp_path / "parent.py"
     script.write_text(
         f"{IMPORTS}from multiprocessing import active_children\n"
@@ -223,66 +228,66 @@ def test_workers_end_with_their_parent_even_if_it_is_killed(tmp_path: Path) -> N
         assert workers
         parent.kill()
     deadline = time.monotonic() + 10
-    while any(alive(worker) for worker in workers):
+    while any(is_alive(worker) for worker in workers):
         assert time.monotonic() < deadline, "workers outlive their parent"
         time.sleep(0.05)
 
 
-def alive(process: int) -> bool:
-    """Tell whether a process runs; one that has ended and waits to be collected does not."""
+def is_alive(process: int) -> bool:
+    """Return whether a process runs; a zombie does not."""
     try:
-        os.kill(process, 0)
         return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except (ProcessLookupError, FileNotFoundError):
         return False
 
 
-@pytest.mark.slow
-def test_any_executor_plays_and_a_failure_does_not_end_the_sweep() -> None:
-    runs = short("fig-6.1a", densities=(6,), seeds=4)
-    bad = Run("bad", runs[0].game, -1, runs[0].labels)
+# Executors.
+
+
+def test_an_executor_plays_and_a_failure_does_not_end_the_sweep() -> None:
+    runs = short_runs("fig-6.1a", densities=(6,), seeds=4)
     with ThreadPoolExecutor(1) as executor:
-        came = {run.digest: result for run, result, _ in sweep([bad, *runs], executor=executor)}
-    failure = came.pop("bad")
+        results = by_digest(sweep([failing_run(runs[0]), *runs], executor=executor))
+    failure = results.pop("bad")
     assert isinstance(failure, Failure)
     assert failure.error.startswith("InputError: seed=-1")
     assert failure.trace.startswith("Traceback")
-    assert came == by_name(play_all(runs))
+    assert results == by_digest(sweep(runs))
 
 
-def test_an_executor_that_gives_up_ends_the_sweep() -> None:
-    class Gone(ThreadPoolExecutor):
+def executor_with(submit: Callable[[], Future[object]]) -> ThreadPoolExecutor:
+    class Executor(ThreadPoolExecutor):
         def submit(self, *_arguments: object, **_options: object) -> Future[object]:
-            future: Future[object] = Future()
-            future.cancel()
-            future.set_running_or_notify_cancel()
-            return future
+            return submit()
 
-    class Broken(ThreadPoolExecutor):
-        def submit(self, *_arguments: object, **_options: object) -> Future[object]:
-            raise BrokenExecutor
-
-    for kind in (Gone, Broken):
-        with kind(1) as executor, pytest.raises(RunError, match="all workers exited"):
-            list(sweep(short("fig-6.1a"), executor=executor))
+    return Executor(1)
 
 
-def test_what_cannot_be_sent_back_is_a_failure() -> None:
-    class Broken(ThreadPoolExecutor):
-        def submit(self, *_arguments: object, **_options: object) -> Future[object]:
-            future: Future[object] = Future()
-            future.set_exception(TypeError("cannot pickle"))
-            return future
+def refuse() -> Future[object]:
+    raise BrokenExecutor
 
-    with Broken(1) as executor:
-        ((_, failure, _),) = sweep(short("fig-6.1a", densities=(6,), seeds=1), executor=executor)
+
+def cancel() -> Future[object]:
+    future: Future[object] = Future()
+    future.cancel()
+    future.set_running_or_notify_cancel()
+    return future
+
+
+def lose() -> Future[object]:
+    future: Future[object] = Future()
+    future.set_exception(TypeError("cannot pickle"))
+    return future
+
+
+@pytest.mark.parametrize("submit", [refuse, cancel])
+def test_a_broken_executor_ends_the_sweep(submit: Callable[[], Future[object]]) -> None:
+    with executor_with(submit) as executor, pytest.raises(RunError, match="all workers exited"):
+        list(sweep(short_runs("fig-6.1a"), executor=executor))
+
+
+def test_a_result_that_cannot_be_pickled_is_a_failure() -> None:
+    with executor_with(lose) as executor:
+        ((_, failure, _),) = sweep(short_runs("fig-6.1a", densities=(6,), seeds=1), executor=executor)
     assert isinstance(failure, Failure)
     assert failure.error == "TypeError: cannot pickle"
-
-
-def test_a_worker_of_other_code_plays_nothing() -> None:
-    (run,) = short("fig-6.1a", densities=(6,), seeds=1)
-    failure, seconds = attempt(run, "", "0.0.1 0123456789ab")
-    assert isinstance(failure, Failure)
-    assert failure.error.endswith(", it must have 0.0.1 0123456789ab")
-    assert seconds == 0

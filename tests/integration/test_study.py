@@ -1,4 +1,4 @@
-"""What a study plays, what it plays again, and what it tells of both."""
+"""Studies: which runs are played, replayed and stored, and what status and manifest say about them."""
 
 import json
 import os
@@ -14,6 +14,7 @@ from kswarms import __version__
 from kswarms.model.foraging import ForagingModel
 from kswarms.model.game_model import GameModel
 from kswarms.scenarios.cli import invoke
+from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.runs.outcome import Failure
 from kswarms.scenarios.runs.play import play
 from kswarms.scenarios.runs.run import expand
@@ -21,50 +22,48 @@ from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.ledger import Ledger
 from kswarms.scenarios.study.study import Study
 from kswarms.scenarios.watch.recorded_run import recorded_run
-from tests.helpers.tiny_study import RUN, TINY, Fault, sessions
+from tests.helpers.tiny_study import PLAIN_RUN, RUN, TINY, Fault, read_sessions
 
-pytestmark = pytest.mark.usefixtures("with_a_file_of_scenarios")
+pytestmark = pytest.mark.usefixtures("tiny_file")
 
 
-def test_what_two_figures_share_is_played_once_also_in_two_sessions(
-    break_games: Callable[[Fault], None],
+def test_runs_that_two_figures_share_are_played_once_even_in_two_sessions(
+    before_games: Callable[[Fault], None],
 ) -> None:
     games = []
-    break_games(lambda model: games.append(model.game.size))
+    before_games(lambda model: games.append(model.game.size))
     tale = TINY.replace(id="tale", densities=(6, 8), seeds=3)
     with Study(Path("results")) as study:
         list(study.play(study.plan([TINY.replace(seeds=2), tale])))
     assert len(games) == 2 * (2 + 3 + 3)  # two curves: N = 4 of the one, 6 of both, 8 of the other
     with Study(Path("results")) as study:
         assert len(study.plan([TINY.replace(seeds=2), tale, tale.replace(id="again")])) == 0
-    again = pq.read_table("results/runs.parquet").to_pylist()
-    assert {row["run"] for row in again if row["scenario"] == "again"} == {
-        row["run"] for row in again if row["scenario"] == "tale"
-    }
+    rows = pq.read_table("results/runs.parquet").to_pylist()
+    again, told = ({row["run"] for row in rows if row["scenario"] == name} for name in ("again", "tale"))
+    assert again == told
 
 
-def test_a_run_without_the_record_asked_for_is_played_again(break_games: Callable[[Fault], None]) -> None:
-    assert invoke([*RUN[:-2], "--seeds", "1"]) == 0
+def test_a_run_without_a_requested_record_is_played_again(before_games: Callable[[Fault], None]) -> None:
+    assert invoke([*PLAIN_RUN, "--seeds", "1"]) == 0
     games = []
-    break_games(lambda model: games.append(model.game.size))
+    before_games(lambda model: games.append(model.game.size))
     assert invoke([*RUN, "--seeds", "2"]) == 0
     assert len(games) == 8
-    assert invoke([*RUN[:-2], "--seeds", "2"]) == 0
+    assert invoke([*PLAIN_RUN, "--seeds", "2"]) == 0
     assert len(games) == 8
     assert pq.read_table("results/robots.parquet").num_rows == 2 * 2 * (4 + 6)
 
 
-def test_a_run_that_fails_when_it_is_played_again_for_a_record_keeps_what_it_came_to(
-    break_games: Callable[[Fault], None], capsys: pytest.CaptureFixture[str]
+def test_a_finished_run_keeps_its_results_when_playing_it_again_fails(
+    before_games: Callable[[Fault], None], capsys: pytest.CaptureFixture[str]
 ) -> None:
     def fault(model: GameModel) -> None:
         if model.game.size == 6:
             raise MemoryError("too much to record")
 
-    plain = RUN[: RUN.index("--record")]
-    assert invoke([*plain, "--seeds", "1"]) == 0
+    assert invoke([*PLAIN_RUN, "--seeds", "1"]) == 0
     before = Path("results/runs.parquet").read_bytes()
-    break_games(fault)
+    before_games(fault)
     capsys.readouterr()
     assert invoke([*RUN, "--seeds", "1"]) == 1
     assert "2 of 4 runs failed" in capsys.readouterr().err
@@ -73,49 +72,45 @@ def test_a_run_that_fails_when_it_is_played_again_for_a_record_keeps_what_it_cam
     assert "MemoryError: too much to record" in capsys.readouterr().out
 
 
-def test_a_failed_run_is_a_row_and_its_command_replays_it(
-    break_games: Callable[[Fault], None], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+def test_status_shows_failed_runs_and_the_commands_that_replay_them(
+    before_games: Callable[[Fault], None], capsys: pytest.CaptureFixture[str]
 ) -> None:
     def fault(model: GameModel) -> None:
         if model.game.size == 6 and model.game.learning:
             raise ZeroDivisionError("no robot\nis left")
 
     words = ["run", "tiny.toml", "--seeds", "2", "--jobs", "1", "--no-figures", "--out", "my results"]
-    with monkeypatch.context():
-        break_games(fault)
-        assert invoke(words) == 1
-        printed = capsys.readouterr()
-        told = "kswarms: 2 of 8 runs failed; see `kswarms status 'my results'`"
-        assert printed.err.splitlines()[-1] == told
-        assert printed.out.splitlines()[-1].startswith("next:   kswarms status 'my results'")
-        assert pq.read_table("my results/runs.parquet").num_rows == 2 * 6
+    before_games(fault)
+    assert invoke(words) == 1
+    printed = capsys.readouterr()
+    told = "kswarms: 2 of 8 runs failed; see `kswarms status 'my results'`"
+    assert printed.err.splitlines()[-1] == told
+    assert printed.out.splitlines()[-1].startswith("next:   kswarms status 'my results'")
+    assert pq.read_table("my results/runs.parquet").num_rows == 2 * 6
 
-        assert invoke(["status", "my results"]) == 0
-        lines = capsys.readouterr().out.splitlines()
-        assert lines[1].split()[:4] == ["tiny", "6", "2", "0"]
-        assert lines[2].split()[:6] == ["runs,", "each", "once", "6", "2", "0"]
-        failed = lines.index("failed: tiny learner, n=6, seed=0: ZeroDivisionError: no robot is left")
-        assert lines[failed + 2] == '  raise ZeroDivisionError("no robot\\nis left")'
-        with Ledger(Path("my results", LEDGER_FILE)) as ledger:
-            ((trace,),) = ledger.query("SELECT traceback FROM runs WHERE status = 'failed' AND seed = 0")
-        replay = lines[failed + 3].removeprefix("  again: ")
-        assert trace.startswith("Traceback")
+    assert invoke(["status", "my results"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[1].split()[:4] == ["tiny", "6", "2", "0"]
+    assert lines[2].split()[:6] == ["runs,", "each", "once", "6", "2", "0"]
+    failed = lines.index("failed: tiny learner, n=6, seed=0: ZeroDivisionError: no robot is left")
+    assert lines[failed + 2] == '  raise ZeroDivisionError("no robot\\nis left")'
+    again, command = lines[failed + 3].split(": ")
+    assert again == "  again"
+    program, *replay = shlex.split(command)
+    assert program == "kswarms"
+    assert invoke(replay) == 1
+    assert capsys.readouterr().err.splitlines()[-1].endswith("ZeroDivisionError: no robot is left")
 
-        program, *again = shlex.split(replay)
-        assert program == "kswarms"
-        assert invoke(again) == 1
-        assert capsys.readouterr().err.splitlines()[-1].endswith("ZeroDivisionError: no robot is left")
-
-    break_games(lambda model: None)  # mended
+    before_games(lambda model: None)
     assert invoke(words) == 0
-    assert sessions("my results")[-1]["runs"] == {"asked for": 8, "done before": 6}
+    assert read_sessions("my results")[-1]["runs"] == {"asked for": 8, "done before": 6}
     capsys.readouterr()
-    assert invoke(again) == 0
+    assert invoke(replay) == 0
     assert capsys.readouterr().out.splitlines()[-1] == "the same as in my results"
     assert pq.read_table("my results/runs.parquet").num_rows == 2 * 8
 
 
-def test_a_replay_that_differs_is_told(
+def test_replay_reports_results_that_differ_or_are_missing(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert invoke([*RUN, "--seeds", "1"]) == 0
@@ -124,9 +119,10 @@ def test_a_replay_that_differs_is_told(
     assert run == next(each for each in expand([TINY]) if each.digest == name)
     real = GameModel.results
     monkeypatch.setattr(GameModel, "results", lambda model: [row | {"pucks": 99} for row in real(model)])
+    capsys.readouterr()
     assert invoke(["replay", "results", name]) == 1
     printed = capsys.readouterr()
-    assert printed.err == "kswarms: results has other results of it: they were played by other code\n"
+    assert printed.err.startswith("kswarms: results has ")
     assert "pucks=99" in printed.out
     with Study(Path("results")) as study:
         (missing,) = study.plan([TINY.replace(densities=(8,), seeds=1, conditions=TINY.conditions[:1])])
@@ -136,19 +132,18 @@ def test_a_replay_that_differs_is_told(
     assert capsys.readouterr().err.startswith(f"kswarms: run='{'0' * 16}': must be a run of results: see ")
 
 
-def test_a_study_without_an_outcome_has_no_tables(break_games: Callable[[Fault], None]) -> None:
+def test_a_study_in_which_every_run_failed_has_no_tables(before_games: Callable[[Fault], None]) -> None:
     def fault(model: GameModel) -> None:
         raise MemoryError
 
-    break_games(fault)
+    before_games(fault)
     assert invoke(["run", "tiny.toml", "--seeds", "1", "--jobs", "1"]) == 1
     assert not list(Path("results").glob("*.parquet"))
 
 
-def test_missing_runs_are_counted(capsys: pytest.CaptureFixture[str]) -> None:
+def test_status_counts_missing_runs(capsys: pytest.CaptureFixture[str]) -> None:
     with Study(Path("results")) as study:
-        runs = study.plan([TINY])
-        for k, _ in enumerate(study.play(runs)):
+        for k, _ in enumerate(study.play(study.plan([TINY]))):
             if k == 9:
                 break
     assert invoke(["status", "results"]) == 0
@@ -156,7 +151,7 @@ def test_missing_runs_are_counted(capsys: pytest.CaptureFixture[str]) -> None:
     assert pq.read_table("results/runs.parquet").num_rows == 20
 
 
-def test_the_manifest_tells_how_the_results_came_about() -> None:
+def test_the_manifest_describes_the_origin_of_the_results() -> None:
     assert invoke([*RUN, "--seeds", "1", "--first-seed", "3"]) == 0
     manifest = json.loads(Path("results/manifest.json").read_text())
     assert manifest["kswarms"] == __version__
@@ -170,8 +165,22 @@ def test_the_manifest_tells_how_the_results_came_about() -> None:
     assert str(Path.cwd()) not in Path("results/manifest.json").read_text()
 
 
+def test_values_of_a_grid_are_columns_beside_n_and_seed() -> None:
+    few = {"id": "gridded", "title": "A grid", "densities": (4,), "seeds": 1, "grid": {"side": (2.0, 3.0)}}
+    with Study(Path("results")) as study:
+        scenarios = [Scenario(**few, conditions=TINY.conditions), TINY.replace(seeds=1, densities=(4,))]
+        list(study.play(study.plan(scenarios)))
+    for table in ("runs", "policies"):
+        rows = pq.read_table(f"results/{table}.parquet").to_pylist()
+        assert {(row["scenario"], row["side"]) for row in rows} == {
+            ("gridded", 2.0),
+            ("gridded", 3.0),
+            ("tiny", None),
+        }
+
+
 @pytest.mark.slow
-def test_the_memory_of_a_sweep_is_flat() -> None:
+def test_the_memory_of_a_sweep_does_not_grow() -> None:
     def pages() -> int:
         return int(Path("/proc/self/statm").read_text().split()[1])
 
@@ -205,16 +214,16 @@ def test_batch_run_gives_the_numbers_of_the_command_line() -> None:
     }
 
 
-def test_a_failure_is_kept_in_place_of_nothing_and_an_outcome_in_place_of_it(tmp_path: Path) -> None:
+def test_an_outcome_replaces_a_failure(tmp_path: Path) -> None:
     (run,) = expand([TINY.replace(densities=(4,), seeds=1, conditions=TINY.conditions[:1])])
     with Ledger(tmp_path / LEDGER_FILE, new=True) as ledger:
         ledger.plan({}, {}, [run])
         assert ledger.outcome(run.digest) is None
-        ledger.add(run, Failure("it broke"), 1.0)
+        ledger.add(run, Failure("it broke"), 1.0, {})
         assert ledger.outcome(run.digest) is None
         assert ledger.unfinished([run], []) == [run]
         outcome = play(run)
-        ledger.add(run, outcome, 1.0)
+        ledger.add(run, outcome, 1.0, {})
         assert ledger.outcome(run.digest) == (outcome.swarms, outcome.policies)
         assert ledger.unfinished([run], []) == []
         assert ledger.unfinished([run], ["robots"]) == [run]

@@ -1,4 +1,4 @@
-"""What a study refuses: a directory in use or of something else, and runs that do not mix."""
+"""Refusals of a study: directories in use or of something else, and runs that must not be mixed."""
 
 import fcntl
 import json
@@ -20,127 +20,117 @@ from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.lock import LOCK_FILE, lock_holder
 from kswarms.scenarios.study.study import Study
 from kswarms.scenarios.watch.recorded_run import recorded_run
-from tests.helpers.tiny_study import RUN, TINY, contents, sessions
+from tests.helpers.tiny_study import RUN, TINY, read_sessions, read_tables
 
-pytestmark = pytest.mark.usefixtures("with_a_file_of_scenarios")
+pytestmark = pytest.mark.usefixtures("tiny_file")
 
-# ------------------------------------------------------------------------------------------ who may play here
+RESULTS = Path("results")
 
 
-def test_two_sweeps_on_one_directory_do_not_meet(capsys: pytest.CaptureFixture[str]) -> None:
-    with Study(Path("results"), "kswarms run tiny.toml") as study:
+def test_a_directory_in_use_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    with Study(RESULTS, "kswarms run tiny.toml") as study:
         study.plan([TINY])
-        user = lock_holder(Path("results"))
-        assert user.startswith(f"process {os.getpid()} on ")
+        holder = lock_holder(RESULTS)
+        assert holder.startswith(f"process {os.getpid()} on ")
+        assert holder.endswith("(kswarms run tiny.toml)")
         assert invoke(RUN) == 2
-        refusal = capsys.readouterr().err
-        assert refusal == f"kswarms: out='results': is in use by {user}; wait, or use another directory\n"
-        assert "(kswarms run tiny.toml)" in refusal
+        reason = f"is in use by {holder}; wait, or use another directory"
+        assert capsys.readouterr().err == f"kswarms: out='results': {reason}\n"
         assert invoke(["status", "results"]) == 0
-        assert f"in use by: {user}" in capsys.readouterr().out
-    assert lock_holder(Path("results")) == ""
-    assert invoke(RUN) == 0
+        assert f"in use by: {holder}" in capsys.readouterr().out
+    assert lock_holder(RESULTS) == ""
+    assert invoke([*RUN, "--seeds", "1"]) == 0
 
 
-def test_a_holder_query_does_not_refuse_a_study(monkeypatch: pytest.MonkeyPatch) -> None:
-    with Study(Path("results")):
+def test_a_study_waits_for_a_query_of_the_lock(monkeypatch: pytest.MonkeyPatch) -> None:
+    with Study(RESULTS):
         pass
-    Path("results", LOCK_FILE).write_text("process 1")  # left by a process that was killed
-    with Path("results", LOCK_FILE).open() as query:
+    (RESULTS / LOCK_FILE).write_text("process 1")  # left by a process that was killed
+    with (RESULTS / LOCK_FILE).open() as query:
         fcntl.flock(query, fcntl.LOCK_SH)  # as `lock_holder` does
         monkeypatch.setattr(time, "sleep", lambda _: fcntl.flock(query, fcntl.LOCK_UN))
-        with Study(Path("results")):
+        with Study(RESULTS):
             monkeypatch.setattr(lock, "_TIMEOUT", 0.0)
             with pytest.raises(InputError, match=f"is in use by process {os.getpid()} on"):
-                Study(Path("results")).__enter__()
+                Study(RESULTS).__enter__()
         fcntl.flock(query, fcntl.LOCK_SH)
         with pytest.raises(InputError, match="is in use by another process"):
-            Study(Path("results")).__enter__()
+            Study(RESULTS).__enter__()
 
 
 @pytest.mark.parametrize("foreign", ["runs.parquet", "policies.parquet"])
-def test_tables_without_their_ledger_are_not_replaced(
-    foreign: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    Path("results").mkdir()
-    Path("results", foreign).write_text("my jogging diary")
-    assert invoke(RUN) == 2
-    assert capsys.readouterr().err == (
-        f"kswarms: out='results': has a {foreign} but no ledger.sqlite; use another directory\n"
-    )
-    assert Path("results", foreign).read_text() == "my jogging diary"
-    assert [path.name for path in Path("results").iterdir()] == [foreign]
+def test_tables_without_a_ledger_are_not_replaced(foreign: str) -> None:
+    RESULTS.mkdir()
+    (RESULTS / foreign).write_text("my jogging diary")
+    with pytest.raises(InputError, match=f"has a {foreign} but no ledger.sqlite; use another directory"):
+        Study(RESULTS).__enter__()
+    assert (RESULTS / foreign).read_text() == "my jogging diary"
+    assert [path.name for path in RESULTS.iterdir()] == [foreign]
 
 
-def test_a_ledger_of_something_else_is_refused_and_left_alone(capsys: pytest.CaptureFixture[str]) -> None:
-    Path("text").mkdir()
+def test_another_kind_of_ledger_is_refused_and_unchanged() -> None:
+    for name in ("text", "other"):
+        Path(name).mkdir()
     Path("text", LEDGER_FILE).write_text("my jogging diary")
-    Path("other").mkdir()
     with sqlite3.connect(Path("other", LEDGER_FILE)) as db:
         db.execute("CREATE TABLE jogging (km REAL)")
     db.close()
     shutil.copytree("other", "later")
     with sqlite3.connect(Path("later", LEDGER_FILE)) as db:
-        db.executescript("PRAGMA application_id = 1803772781; PRAGMA user_version = 2")
+        db.executescript("PRAGMA application_id = 1802729325; PRAGMA user_version = 2")
     db.close()
     for name, reason in (("text", "file is not"), ("other", "it is not"), ("later", "format 2, not 1")):
         before = Path(name, LEDGER_FILE).read_bytes()
-        assert invoke([*RUN, "--out", name]) == 2
-        assert f"='{name}/{LEDGER_FILE}': must be a ledger of kswarms ({reason}" in capsys.readouterr().err
+        with pytest.raises(InputError, match=rf"='{name}/{LEDGER_FILE}': must be a ledger of.*\({reason}"):
+            Study(Path(name)).__enter__()
         assert Path(name, LEDGER_FILE).read_bytes() == before
 
 
-# ------------------------------------------------------------------------------------------ what does not mix
-
-
-def test_a_curve_described_otherwise_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_different_curve_of_the_same_name_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke([*RUN, "--seeds", "2"]) == 0
-    before = contents("results")
+    before = read_tables("results")
     longer = tuple(condition.replace(duration=3.0) for condition in TINY.conditions)
-    # Other densities, so that no point of the curve is there already.
+    # Another density, so that the two curves have no point in common.
     Path("tiny.toml").write_text(TINY.replace(conditions=longer, densities=(8,)).to_toml())
     assert invoke(RUN) == 2
     refusal = "out='results': has runs of a different tiny; use another directory, or another id"
     assert capsys.readouterr().err == f"kswarms: {refusal}\n"
-    assert contents("results") == before
-    assert len(sessions("results")) == 1
-    Path("tiny.toml").write_text(TINY.replace(conditions=longer, id="longer").to_toml())
+    assert read_tables("results") == before
+    assert len(read_sessions()) == 1
+    Path("tiny.toml").write_text(TINY.replace(conditions=longer, id="longer", seeds=2).to_toml())
     assert invoke(RUN) == 0
     assert set(pq.read_table("results/runs.parquet")["scenario"].to_pylist()) == {"tiny", "longer"}
 
 
-def test_learned_policies_that_changed_make_another_curve(tmp_path: Path) -> None:
+def test_a_curve_differs_when_its_file_of_learned_policies_does(tmp_path: Path) -> None:
     arm = {"opponent": 1, "action": "fight", "reward": 1.0, "time": 1.0, "count": 1.0, "q": 0.1}
     file = tmp_path / "learned.json"
     content = {"format": "kswarms-policies-1", "swarm": 2, "robots": [[arm]]}
     file.write_text(json.dumps(content))
     swarms = (SwarmRule(policy="avoid"), SwarmRule(policy=f"learned(file='{file}')"))
     loading = TINY.replace(conditions=(Condition(swarms=swarms, duration=1.0),), seeds=1)
-    with Study(Path("results")) as study:
+    with Study(RESULTS) as study:
         (run, *_) = study.plan([loading])
     file.write_text(json.dumps(content | {"robots": [[arm | {"action": "flight"}]]}))
-    with Study(Path("results")) as study, pytest.raises(InputError, match="has runs of a different tiny"):
+    with Study(RESULTS) as study, pytest.raises(InputError, match="has runs of a different tiny"):
         study.plan([loading.replace(densities=(8,))])
     with pytest.raises(InputError, match="loads a file that has changed"):
-        recorded_run(Path("results"), run.digest)
+        recorded_run(RESULTS, run.digest)
 
 
-def test_runs_of_another_version_are_refused(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert invoke([*RUN, "--seeds", "1"]) == 0
-    before = contents("results")
-    for module in ("runs.run", "study.ledger", "study.study"):
+def test_runs_of_another_version_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    with Study(RESULTS) as study:
+        (run, *_) = study.plan([TINY])
+    for module in ("runs.run", "study.ledger"):
         monkeypatch.setattr(f"kswarms.scenarios.{module}.__version__", "9.0.0")
-    version = __version__
-    assert invoke(RUN) == 2
-    assert capsys.readouterr().err == (
-        f"kswarms: out='results': has runs of kswarms {version}, this is 9.0.0; use another directory\n"
-    )
-    assert contents("results") == before
+    reason = f"has runs of kswarms {__version__}, this is 9.0.0; use another directory"
+    with Study(RESULTS) as study, pytest.raises(InputError, match=reason):
+        study.plan([TINY])
+    with pytest.raises(InputError, match=f"was played by kswarms {__version__}, this is 9.0.0"):
+        recorded_run(RESULTS, run.digest)
 
 
-def test_runs_of_other_code_are_told_of(
+def test_runs_of_other_code_are_kept_and_reported(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with monkeypatch.context() as patch:
@@ -148,9 +138,7 @@ def test_runs_of_other_code_are_told_of(
             patch.setattr(f"kswarms.scenarios.{module}.code_version", lambda: "0.1.0 before")
         assert invoke([*RUN, "--seeds", "1"]) == 0
         assert capsys.readouterr().err == ""
-    assert invoke(RUN) == 0
-    assert capsys.readouterr().err == (
-        "kswarms: results keeps runs of other code, 0.1.0 before; name another --out to play them again\n"
-    )
+    assert invoke([*RUN, "--seeds", "1"]) == 0
+    assert capsys.readouterr().err.startswith("kswarms: results keeps runs of other code, 0.1.0 before; ")
     assert invoke(["status", "results"]) == 0
     assert "played by: kswarms 0.1.0 before, 4 runs" in capsys.readouterr().out

@@ -1,4 +1,4 @@
-"""Studies that end suddenly: by kills, Ctrl-C, full disks and damage, what was played is kept and goes on."""
+"""Studies that are killed, interrupted or damaged, or run out of disk space: they keep finished runs."""
 
 import json
 import os
@@ -19,29 +19,31 @@ from kswarms.model.game_model import GameModel
 from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.study import Study
-from tests.helpers.interrupts import heed_interrupts
-from tests.helpers.tiny_study import RUN, TINY, Fault, contents, sessions, undisturbed
+from tests.helpers.interrupts import accept_interrupts
+from tests.helpers.tiny_study import RUN, TINY, Fault, read_sessions, read_tables, uninterrupted_tables
 
-pytestmark = pytest.mark.usefixtures("with_a_file_of_scenarios")
+pytestmark = pytest.mark.usefixtures("tiny_file")
 
-INTERRUPTED = ["kswarms: results keeps the finished runs; the same command resumes", "kswarms: interrupted"]
-NOBODY = 99_999_999
-"""Number that no process has."""
-KSWARMS = [sys.executable, "-m", "kswarms.scenarios.cli"]
+NO_PROCESS = 99_999_999
+"""A number that no process has."""
+
+
+def finished_runs() -> set[str]:
+    return set(pq.read_table("results/runs.parquet")["run"].to_pylist())
 
 
 @pytest.mark.parametrize("moments", [5, pytest.param(50, marks=pytest.mark.full)])
-def test_a_sweep_killed_at_any_moment_goes_on_to_the_same_tables(moments: int) -> None:
-    whole = undisturbed()
+def test_a_sweep_killed_at_any_moment_resumes_to_the_same_tables(moments: int) -> None:
+    whole = uninterrupted_tables()
     shutil.rmtree("whole")
     started = time.monotonic()
-    assert undisturbed() == whole
+    assert uninterrupted_tables() == whole
     length = time.monotonic() - started
     draws = random.Random(moments)
-    played = []
+    finished = []
     for moment in range(moments):
         directory = f"killed-{moment}"
-        # Forked, for a new process would spend most of the moments on its imports.
+        # Forked: a new process would spend most of the moments on its imports.
         child = os.fork()
         if child == 0:
             invoke([*RUN, "--out", directory])
@@ -50,15 +52,15 @@ def test_a_sweep_killed_at_any_moment_goes_on_to_the_same_tables(moments: int) -
         os.kill(child, signal.SIGKILL)
         os.waitpid(child, 0)
         assert invoke([*RUN, "--out", directory]) == 0
-        assert contents(directory) == whole
-        played.append(sessions(directory)[-1]["runs"]["done before"])
-        assert sessions(directory)[-1]["status"] == "done"
+        assert read_tables(directory) == whole
+        finished.append(read_sessions(directory)[-1]["runs"]["done before"])
+        assert read_sessions(directory)[-1]["status"] == "done"
         assert not list(Path(directory).glob(".unfinished*"))
-    assert len(set(played)) > 2, "all moments were before the first run or after the last"
+    assert len(set(finished)) > 2, "all moments were before the first run or after the last"
 
 
-def test_ctrl_c_in_the_own_process_keeps_what_is_done(
-    break_games: Callable[[Fault], None], capsys: pytest.CaptureFixture[str]
+def test_ctrl_c_keeps_finished_runs(
+    before_games: Callable[[Fault], None], capsys: pytest.CaptureFixture[str]
 ) -> None:
     games = []
 
@@ -67,50 +69,52 @@ def test_ctrl_c_in_the_own_process_keeps_what_is_done(
         if len(games) == 8:
             raise KeyboardInterrupt
 
-    break_games(interrupt)
+    before_games(interrupt)
     assert invoke(RUN) == 130
-    assert capsys.readouterr().err.splitlines() == INTERRUPTED
-    assert sessions("results")[0]["status"] == "stopped: KeyboardInterrupt"
-    assert len(set(pq.read_table("results/runs.parquet")["run"].to_pylist())) == 7
+    first, last = capsys.readouterr().err.splitlines()
+    assert first.startswith("kswarms: results keeps ")
+    assert last == "kswarms: interrupted"
+    assert read_sessions()[0]["status"] == "stopped: KeyboardInterrupt"
+    assert len(finished_runs()) == 7
     assert invoke(RUN) == 0
     assert len(games) == 80 + 1
-    assert contents("results") == undisturbed()
+    assert read_tables("results") == uninterrupted_tables()
 
 
 @pytest.mark.slow
-def test_ctrl_c_stops_the_workers_and_keeps_what_is_done() -> None:
-    # More than half a minute of games, so that the signal comes before the last however late it is.
+def test_ctrl_c_stops_worker_processes_and_keeps_finished_runs() -> None:
+    # Over half a minute of games, so that the signal arrives before the last, even on a slow machine.
     words = ["run", "fig-6.2", "--densities", "50", "--seeds", "500", "--no-figures", "--jobs", "2"]
     with subprocess.Popen(
-        [*KSWARMS, *words, "--progress", "json"],
+        [sys.executable, "-m", "kswarms.scenarios.cli", *words, "--progress", "json"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
-        preexec_fn=heed_interrupts,
+        preexec_fn=accept_interrupts,
     ) as process:
         assert process.stderr is not None
         line = json.loads(process.stderr.readline())
         assert (line["done"], line["failed"], line["total"], line["scenario"]) == (1, 0, 500, "fig-6.2")
         assert line["seconds_left"] > 0
-        os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers too
+        os.killpg(process.pid, signal.SIGINT)  # like a terminal, also to the workers
         out, err = process.communicate(timeout=20)
     assert process.returncode == 130
     assert out == ""
     assert "Traceback" not in err
-    assert err.splitlines()[-2:] == INTERRUPTED
-    done = set(pq.read_table("results/runs.parquet")["run"].to_pylist())
-    assert 1 <= len(done) < 500
-    assert sessions("results")[0]["status"] == "stopped: KeyboardInterrupt"
+    assert err.splitlines()[-1] == "kswarms: interrupted"
+    finished = finished_runs()
+    assert 1 <= len(finished) < 500
+    assert read_sessions()[0]["status"] == "stopped: KeyboardInterrupt"
     assert invoke([*words, "--seeds", "2", "--jobs", "1", "--quiet"]) == 0
-    assert sessions("results")[1]["runs"]["done before"] >= 1
-    assert done <= set(pq.read_table("results/runs.parquet")["run"].to_pylist())
+    assert read_sessions()[1]["runs"]["done before"] >= 1
+    assert finished <= finished_runs()
 
 
-def test_a_full_disk_stops_the_sweep_and_keeps_what_was_played(
+def test_a_full_disk_stops_the_sweep_and_keeps_finished_runs(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    whole = undisturbed()
+    whole = uninterrupted_tables()
     real = sqlite3.connect
 
     def small(path: Path) -> sqlite3.Connection:
@@ -120,40 +124,39 @@ def test_a_full_disk_stops_the_sweep_and_keeps_what_was_played(
 
     with monkeypatch.context() as patch:
         patch.setattr(sqlite3, "connect", small)
-        assert invoke([*RUN, "--out", "full"]) == 1
-    assert capsys.readouterr().err == "kswarms: full/ledger.sqlite: database or disk is full\n"
-    assert not Path("full/runs.parquet").exists()
-    assert invoke([*RUN, "--out", "full"]) == 0
-    assert 0 < sessions("full")[-1]["runs"]["done before"] < 80
-    assert contents("full") == whole
+        assert invoke(RUN) == 1
+    assert capsys.readouterr().err == "kswarms: results/ledger.sqlite: database or disk is full\n"
+    assert not Path("results/runs.parquet").exists()
+    assert invoke(RUN) == 0
+    assert 0 < read_sessions()[-1]["runs"]["done before"] < 80
+    assert read_tables("results") == whole
 
 
 @pytest.mark.parametrize("failing", ["write_table", "replace"])
-def test_tables_that_cannot_be_written_stay_as_they_were(
+def test_tables_that_cannot_be_written_stay_unchanged(
     failing: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert invoke([*RUN, "--seeds", "1"]) == 0
-    before = contents("results")
+    before = read_tables("results")
 
     def full(*_arguments: object) -> None:
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patch:
         patch.setattr(pq.ParquetWriter if failing == "write_table" else Path, failing, full)
-        assert invoke(RUN) == 1
+        assert invoke([*RUN, "--seeds", "2"]) == 1
     assert capsys.readouterr().err == "kswarms: [Errno 28] No space left on device\n"
-    assert contents("results") == before
+    assert read_tables("results") == before
     assert not list(Path("results").glob(".unfinished-tables*"))
-    whole = undisturbed()
     assert invoke(RUN) == 0
-    assert contents("results") == whole
+    assert read_tables("results") == uninterrupted_tables()
 
 
 @pytest.mark.parametrize(
-    "name", ["runs.parquet", "manifest.json", f".unfinished-{NOBODY}-manifest.json", "lock"]
+    "name", ["runs.parquet", "manifest.json", f".unfinished-{NO_PROCESS}-manifest.json", "lock"]
 )
-def test_half_a_file_is_written_anew(name: str) -> None:
-    whole = undisturbed()
+def test_truncated_files_are_replaced(name: str) -> None:
+    whole = uninterrupted_tables()
     assert invoke([*RUN, "--seeds", "3"]) == 0
     half = Path("whole", name).read_bytes()[:100] if Path("whole", name).exists() else b'{"half'
     Path("results", name).write_bytes(half)
@@ -161,15 +164,15 @@ def test_half_a_file_is_written_anew(name: str) -> None:
     left_over.mkdir()
     (left_over / "runs.parquet").write_bytes(half)
     assert invoke(RUN) == 0
-    assert contents("results") == whole
+    assert read_tables("results") == whole
     assert not list(Path("results").glob(".unfinished*"))
     assert json.loads(Path("results/manifest.json").read_text())["scenarios"] == {"tiny": TINY.to_toml()}
 
 
-def test_half_a_commit_is_forgotten() -> None:
-    whole = undisturbed()
+def test_a_truncated_commit_is_ignored() -> None:
+    whole = uninterrupted_tables()
     child = os.fork()
-    if child == 0:  # ends without closing its ledger, so what was committed last stands beside the file
+    if child == 0:  # exits without closing the ledger, so the last commits are in its journal
         with Study(Path("results")) as study:
             for k, _ in enumerate(study.play(study.plan([TINY], records=["robots"]), records=["robots"])):
                 if k == 30:
@@ -178,5 +181,28 @@ def test_half_a_commit_is_forgotten() -> None:
     journal = Path("results", f"{LEDGER_FILE}-wal")
     journal.write_bytes(journal.read_bytes()[:-1000])
     assert invoke(RUN) == 0
-    assert 0 < sessions("results")[-1]["runs"]["done before"] < 31
-    assert contents("results") == whole
+    assert 0 < read_sessions()[-1]["runs"]["done before"] < 31
+    assert read_tables("results") == whole
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "UPDATE runs SET swarms = 'nonsense'",
+        "UPDATE runs SET swarms = '[{}]'",
+        "UPDATE records SET rows = x'00'",
+        "UPDATE sessions SET about = 'nonsense'",
+    ],
+)
+def test_a_damaged_ledger_is_reported_in_one_line_and_tables_stay_unchanged(
+    statement: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke([*RUN, "--seeds", "1"]) == 0
+    before = read_tables("results")
+    with sqlite3.connect(Path("results", LEDGER_FILE)) as ledger:
+        ledger.execute(statement)
+    ledger.close()
+    assert invoke([*RUN, "--seeds", "1"]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "ledger.sqlite: is damaged (" in line
+    assert read_tables("results") == before

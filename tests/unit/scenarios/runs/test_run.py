@@ -1,4 +1,4 @@
-"""Expansion to runs: each game and seed once, named by what is simulated."""
+"""Runs of scenarios, and the digests that identify them."""
 
 import re
 import subprocess
@@ -23,7 +23,7 @@ def test_a_scenario_expands_to_conditions_times_densities_times_seeds() -> None:
     assert asked == {(name, n, seed) for name in names for n in (6, 10) for seed in (5, 6, 7)}
 
 
-def test_two_figures_of_one_condition_share_its_runs() -> None:
+def test_two_figures_with_the_same_condition_share_its_runs() -> None:
     few = [CATALOGUE[name].replace(densities=(6,), seeds=2) for name in ("fig-6.1c", "fig-6.2", "fig-6.3")]
     runs = expand(few)
     assert [run.labels for run in runs] == [
@@ -35,7 +35,7 @@ def test_two_figures_of_one_condition_share_its_runs() -> None:
     assert [run.seed for run in runs] == [0, 1, 0, 1]
 
 
-def test_a_figure_with_more_seeds_shares_those_that_both_have() -> None:
+def test_figures_share_the_runs_of_the_seeds_that_both_have() -> None:
     one, twenty = CATALOGUE["fig-6.2"].replace(seeds=1), CATALOGUE["fig-6.3"]
     runs = expand([one.replace(densities=(6,)), twenty.replace(densities=(6,))])
     assert len(runs) == 20
@@ -66,7 +66,7 @@ SHARED = """
 """
 
 
-def test_the_curves_of_one_game_share_its_run_and_no_others_do() -> None:
+def test_only_curves_of_the_same_game_share_a_run() -> None:
     runs = expand([scenario.replace(densities=(26,), seeds=1) for scenario in CATALOGUE.values()])
     shared = {
         " = ".join(f"{name.removeprefix('fig-')} {condition}".strip() for name, condition in run.labels)
@@ -77,7 +77,7 @@ def test_the_curves_of_one_game_share_its_run_and_no_others_do() -> None:
 
 
 @pytest.mark.parametrize(("random", "same"), [("c", "fig-6.4b"), ("d", "fig-6.4a")])
-def test_random_stations_are_all_that_tells_their_figures_from_others(random: str, same: str) -> None:
+def test_figures_with_random_stations_differ_from_others_in_nothing_else(random: str, same: str) -> None:
     game = CATALOGUE[f"fig-6.13{random}"].game("", 26)
     assert game != CATALOGUE[same].game("", 26)
     assert game.replace(layout="symmetric") == CATALOGUE[same].game("", 26)
@@ -99,7 +99,7 @@ def test_the_digest_covers_game_seed_and_version(monkeypatch: pytest.MonkeyPatch
     assert len(others - {name}) == 6
 
 
-def test_the_digest_covers_learned_policies_by_their_content(tmp_path: Path) -> None:
+def test_the_digest_covers_the_content_of_learned_policies(tmp_path: Path) -> None:
     file = tmp_path / "learned.json"
     arm = {"opponent": 1, "action": "fight", "reward": 1.0, "time": 10.0, "count": 2.0, "q": 0.1}
     save(file, 2, [[arm]])
@@ -149,6 +149,6 @@ def test_a_curve_is_described_by_everything_but_the_number_of_robots() -> None:
     assert described != describe_curve(condition.replace(parameters="fitted, friction=0.9"), 6)
 
 
-def test_the_code_is_named_by_the_version_and_what_it_is() -> None:
+def test_the_code_version_is_the_version_with_a_hash() -> None:
     assert re.fullmatch(r"\S+ [0-9a-f]{12}", code_version())
     assert code_version().startswith(f"{module.__version__} ")
