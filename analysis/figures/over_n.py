@@ -30,7 +30,8 @@ from kswarms.analysis.measures.quantities import (
     split_curves,
     with_time_shares,
 )
-from kswarms.analysis.results.runs import Results, read_runs
+from kswarms.analysis.results.runs import Results, read_results
+from kswarms.analysis.results.sweeps import Sweep
 from kswarms.analysis.tables.learned import named_columns
 
 
@@ -159,7 +160,7 @@ def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool =
 
 
 def write_figures(
-    results: Path | Results,
+    source: str | Path | Sweep | Results,
     out: Path,
     scenarios: Sequence[str] | None = None,
     titles: Mapping[str, str] | None = None,
@@ -168,8 +169,8 @@ def write_figures(
 
     Parameters
     ----------
-    results : Path or Results
-        Directory with `runs.parquet`, or results that were read.
+    source : Results, or as for `read_results`
+        Results directory of `kswarms run --out`, or outcomes of a sweep.
     out : Path
         Folder of the figures; it is created if it does not exist.
     scenarios : sequence of str, optional
@@ -187,7 +188,7 @@ def write_figures(
     InputError
         The runs cannot be read, or a figure cannot be written; then an existing figure is unchanged.
     """
-    runs = results.runs if isinstance(results, Results) else read_runs(results)
+    runs = (source if isinstance(source, Results) else read_results(source)).runs
     present = dict.fromkeys(runs["scenario"])
     paths = []
     for scenario in present if scenarios is None else scenarios:

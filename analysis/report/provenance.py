@@ -18,8 +18,14 @@ MANIFEST_FILE: Final = "manifest.json"
 _LIBRARIES: Final = ("kswarms", "matplotlib", "networkx", "numpy", "pandas", "pyarrow", "scipy", "seaborn")
 
 
-def provenance_parts(directory: Path) -> list[Part]:
-    """Describe the files of a results directory, the libraries of the report, and the manifest.
+def libraries_part() -> Part:
+    """Return the versions of Python and the libraries that make the report."""
+    made_with = ", ".join(f"{name} {version(name)}" for name in _LIBRARIES)
+    return Part("made-with", "This report", [f"Made with {made_with}, Python {platform.python_version()}."])
+
+
+def directory_parts(directory: Path) -> list[Part]:
+    """Describe the files of a results directory and its manifest.
 
     Raises
     ------
@@ -32,13 +38,11 @@ def provenance_parts(directory: Path) -> list[Part]:
     header = ["file", "rows", "bytes", "SHA-256, first 16 digits"]
     table = TextTable(header, rows, "")
     files.add_table("files", "Files of the results directory", table, pd.DataFrame(described))
-    made_with = ", ".join(f"{name} {version(name)}" for name in _LIBRARIES)
-    this = Part("made-with", "This report", [f"Made with {made_with}, Python {platform.python_version()}."])
     manifest = directory / MANIFEST_FILE
     if not manifest.is_file():
         text = f"The directory has no {MANIFEST_FILE}: versions and commands of the runs are unknown."
-        return [files, this, Part("manifest", "Manifest", [text])]
-    return [files, this, *_manifest_parts(_read(manifest))]
+        return [files, Part("manifest", "Manifest", [text])]
+    return [files, *_manifest_parts(_read(manifest))]
 
 
 def _describe(path: Path) -> dict[str, Any]:

@@ -8,10 +8,10 @@ from typing import Final
 
 import pandas as pd
 
-from kswarms.analysis.findings import FINDINGS, Finding, judge_all
+from kswarms.analysis.findings import FINDINGS, NO_DATA, Finding, judge_all
 from kswarms.analysis.report.coverage import Planned, coverage, coverage_table
 from kswarms.analysis.report.page import Chapter, Part, Report
-from kswarms.analysis.report.provenance import provenance_parts
+from kswarms.analysis.report.provenance import directory_parts, libraries_part
 from kswarms.analysis.report.record_parts import PlacesOf, conflict_parts, recorded_conditions, robots_parts
 from kswarms.analysis.report.scenario_parts import (
     ARGOS,
@@ -21,6 +21,7 @@ from kswarms.analysis.report.scenario_parts import (
     verdicts_part,
 )
 from kswarms.analysis.results.runs import Results, read_results
+from kswarms.analysis.results.sweeps import Sweep
 from kswarms.analysis.text_tables import span
 
 _TITLES: Final = {
@@ -51,7 +52,7 @@ Progress = Callable[[Sequence[Step]], Iterable[Step]]
 
 
 def build_report(
-    source: Path | Results,
+    source: str | Path | Sweep | Results,
     plan: Mapping[str, Planned] | None = None,
     source_tables: Tables | None = None,
     findings: Sequence[Finding] = FINDINGS,
@@ -62,8 +63,8 @@ def build_report(
 
     Parameters
     ----------
-    source : Path or Results
-        Results directory of `kswarms run --out`, or the results of a sweep, which have no recorded tables.
+    source : Results, or as for `read_results`
+        Results directory of `kswarms run --out`, or outcomes of a sweep, which have no recorded tables.
     plan : mapping of str to Planned, optional
         Scenarios by id, in their order in the report; other scenarios of the results follow.
     source_tables : mapping of str to (str, sequence of str), optional
@@ -90,18 +91,20 @@ def build_report(
     covered = coverage(results.runs, plan)
     parts: dict[str, list[Part]] = defaultdict(list)
     steps: list[Step] = [
-        *([lambda: [("verdicts", verdicts_part(judge_all(results, findings)))]] if findings else []),
+        partial(_verdicts, results, findings, bool(plan)),
         *_scenario_steps(results, plan, tables, covered),
         *_table_steps(results, tables),
         partial(argos_parts, results.runs),
     ]
     name = "a sweep"
-    if not isinstance(source, Results):
-        name = source.resolve().name
-        parts["provenance"] = provenance_parts(source)
-        with_conflicts, with_robots = recorded_conditions(source, results.runs)
-        steps += [partial(conflict_parts, source, condition, places_of) for condition in with_conflicts]
-        steps += [partial(robots_parts, source, condition) for condition in with_robots]
+    parts["provenance"].append(libraries_part())
+    if isinstance(source, str | Path):
+        directory = Path(source)
+        name = directory.resolve().name
+        parts["provenance"] += directory_parts(directory)
+        with_conflicts, with_robots = recorded_conditions(directory, results.runs)
+        steps += [partial(conflict_parts, directory, condition, places_of) for condition in with_conflicts]
+        steps += [partial(robots_parts, directory, condition) for condition in with_robots]
     for step in progress(steps):
         for chapter, part in step():
             parts[chapter].append(part)
@@ -111,6 +114,13 @@ def build_report(
         parts["missing"] = [missing]
     chapters = [Chapter(_anchor(title), title, parts[key]) for key, title in _TITLES.items() if parts[key]]
     return Report(f"Report on {name}", _summary(results, covered), chapters)
+
+
+def _verdicts(results: Results, findings: Sequence[Finding], planned: bool) -> Iterator[tuple[str, Part]]:
+    """Yield the verdicts; without a plan, only if there are results for any finding."""
+    verdicts = judge_all(results, findings)
+    if planned or any(verdict.verdict != NO_DATA for verdict in verdicts):
+        yield "verdicts", verdicts_part(verdicts)
 
 
 def _scenario_steps(

@@ -12,7 +12,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.findings import Verdict
 from kswarms.analysis.report.coverage import Planned, coverage, coverage_table
 from kswarms.analysis.report.page import Chapter, Part, Report
-from kswarms.analysis.report.provenance import provenance_parts
+from kswarms.analysis.report.provenance import directory_parts, libraries_part
 from kswarms.analysis.report.record_parts import conflict_parts, recorded_conditions
 from kswarms.analysis.report.scenario_parts import argos_parts, verdicts_part
 from kswarms.analysis.text_tables import TextTable
@@ -169,9 +169,9 @@ def test_random_stations_are_not_drawn_into_the_common_map(tmp_path: Path) -> No
 
 def test_provenance_without_a_manifest(tmp_path: Path) -> None:
     runs_of("fig-x").to_parquet(tmp_path / "runs.parquet")
-    files, made_with, manifest = provenance_parts(tmp_path)
+    files, manifest = directory_parts(tmp_path)
     assert files.tables[0].table.rows[0][:2] == ["runs.parquet", "24"]
-    assert "matplotlib 3." in made_with.text[0]
+    assert "matplotlib 3." in libraries_part().text[0]
     assert "no manifest.json" in manifest.text[0]
 
 
@@ -186,7 +186,7 @@ def test_provenance_shows_the_manifest(tmp_path: Path) -> None:
         "empty": [],
     }
     (tmp_path / "manifest.json").write_text(json.dumps(content))
-    _, _, manifest, *others = provenance_parts(tmp_path)
+    _, manifest, *others = directory_parts(tmp_path)
     assert manifest.source.splitlines() == ["kswarms: 0.1.0", "code: abc", "empty: []"]
     assert [part.id for part in others] == ["manifest-scenarios", "manifest-libraries", "manifest-sessions"]
     assert others[0].source == '# fig-x\nid = "fig-x"\nseeds = 4'
@@ -198,4 +198,4 @@ def test_provenance_shows_the_manifest(tmp_path: Path) -> None:
 def test_an_invalid_manifest_is_an_error(tmp_path: Path, text: str, allowed: str) -> None:
     (tmp_path / "manifest.json").write_text(text)
     with pytest.raises(InputError, match=f"manifest.json': must be {allowed}"):
-        provenance_parts(tmp_path)
+        directory_parts(tmp_path)
