@@ -7,9 +7,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import mesa
 import pytest
 
 from benchmarks import report as study
+from kswarms.analysis.figures.over_n import write_figures
+from kswarms.analysis.report import build_report
+from kswarms.model.foraging import ForagingModel
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.cli import invoke
 from tests.helpers.html_page import Page
@@ -130,6 +134,17 @@ def test_user_defined_scenarios_have_their_own_chapter(tmp_path: Path) -> None:
     page = Page((tmp_path / "report.html").read_text())
     assert {"other-scenarios", "hunt", "network-hunt", "map-hunt"} <= set(page.ids)
     assert len(page.images) == 2 + 2 + 1
+
+
+def test_rows_of_a_batch_run_can_be_drawn_and_reported(tmp_path: Path) -> None:
+    games = {"n": [4, 8], "policies": ["avoid,attack", "avoid,avoid"], "seed": range(2), "duration": 10.0}
+    rows = mesa.batch_run(ForagingModel, games, number_processes=1, display_progress=False)
+    assert write_figures(rows, tmp_path) == [tmp_path / "sweep.png"]
+    report = build_report(rows)
+    assert [chapter.title for chapter in report.chapters] == ["Other scenarios", "Provenance"]
+    page = Page(report.to_html())
+    assert "sweep" in page.ids
+    assert len(page.images) == 2
 
 
 @pytest.mark.parametrize(
