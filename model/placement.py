@@ -1,13 +1,14 @@
-"""Where robots start: uniformly at random, without overlap (specification, section 3.1).
+"""Starting places of robots: uniformly at random, without overlap (specification, section 3.1).
 
-Each robot takes the first free place that it draws. In a crowd where it draws none, it takes the roomiest of
-the places drawn last, and in the end all are parted as wedged bodies are.
+Each robot takes the first free place that it draws. In a crowd, a robot without a free draw takes the roomiest
+of its last draws; finally, all robots are parted as wedged bodies are.
 """
 
 import math
 from typing import Final
 
 import numpy as np
+from numpy.random import Generator
 from scipy.spatial.distance import pdist
 
 from kswarms.agents.common.arrays import Floats
@@ -16,25 +17,25 @@ from kswarms.agents.streams import Purpose, stream
 from kswarms.model.kernel.arrays import PAIR, WORK
 from kswarms.model.kernel.relaxation import TOLERANCE, relax
 
-_BATCHES: Final = (16, 256, 4096, 4096)
-"""Places tried at a time: few at first, many where room is scarce."""
+_FEW: Final = 16
+"""Places that a robot draws and tries one by one, which is fastest where there is room."""
+_BATCHES: Final = (256, 4096, 4096)
+"""Places that it then draws and tries at once."""
 
 
 def start_poses(
     n: int, seed: int, half: float, radius: float, clearance: float, wall_clearance: float
 ) -> tuple[Floats, Floats]:
-    """Draw positions and headings, robot by robot from its own streams.
-
-    The same for every game with this seed, number of robots, arena and body, whatever the policies.
+    """Draw positions and headings, robot by robot from its own streams; policies have no influence.
 
     Parameters
     ----------
     n, seed : int
-        Robots, and the seed of the run.
+        Number of robots; seed of the run.
     half, radius : float
-        Half the side of the arena; of a body (m).
+        Half the side of the arena; radius of a body (m).
     clearance, wall_clearance : float
-        Least gap between two bodies, and to a wall (m).
+        Minimum gap between two bodies, and to a wall (m).
 
     Returns
     -------
@@ -46,36 +47,49 @@ def start_poses(
     Raises
     ------
     InputError
-        If no free place is found for a robot.
+        If there is no free place for a robot.
     """
-    positions = np.empty((n, 2))
+    positions: list[tuple[float, float]] = []
     headings = np.empty(n)
     limit = half - radius - wall_clearance
     apart = (2 * radius + clearance) ** 2
     crowded = False
     for robot in range(n):
-        draws = stream(seed, robot, Purpose.POSITION)
-        for batch in _BATCHES:
-            places = draws.uniform(-limit, limit, size=(batch, 2))
-            squares = ((places[:, None, :] - positions[None, :robot, :]) ** 2).sum(axis=2)
-            room = squares.min(axis=1, initial=np.inf)
-            free = np.flatnonzero(room >= apart)
-            if len(free) > 0:
-                positions[robot] = places[free[0]]
+        place, is_free = _draw_place(stream(seed, robot, Purpose.POSITION), limit, positions, apart)
+        positions.append(place)
+        crowded |= not is_free
+        headings[robot] = stream(seed, robot, Purpose.HEADING).uniform(-math.pi, math.pi)
+    places = np.array(positions)
+    if crowded:
+        _part(places, limit, radius + clearance / 2)
+        if _nearest(places) < 2 * radius + clearance:
+            raise InputError("n", n, f"robots of radius {radius} m find no place in a square of {2 * half} m")
+    return places, headings
+
+
+def _draw_place(
+    draws: Generator, limit: float, taken: list[tuple[float, float]], apart: float
+) -> tuple[tuple[float, float], bool]:
+    """Return the first free place drawn, or the roomiest of the last batch; and whether it is free."""
+    for x, y in draws.uniform(-limit, limit, size=(_FEW, 2)).tolist():
+        for other_x, other_y in taken:
+            dx, dy = x - other_x, y - other_y
+            if dx * dx + dy * dy < apart:
                 break
         else:
-            positions[robot] = places[room.argmax()]
-            crowded = True
-        headings[robot] = stream(seed, robot, Purpose.HEADING).uniform(-math.pi, math.pi)
-    if crowded:
-        _part(positions, limit, radius + clearance / 2)
-        if _nearest(positions) < 2 * radius + clearance:
-            raise InputError("n", n, f"robots of radius {radius} m find no place in a square of {2 * half} m")
-    return positions, headings
+            return (x, y), True
+    others = np.array(taken)
+    for batch in _BATCHES:
+        places = draws.uniform(-limit, limit, size=(batch, 2))
+        room = ((places[:, None, :] - others) ** 2).sum(axis=2).min(axis=1)
+        free = np.flatnonzero(room >= apart)
+        if len(free) > 0:
+            return tuple(places[free[0]].tolist()), True
+    return tuple(places[room.argmax()].tolist()), False
 
 
 def _part(positions: Floats, limit: float, reach: float) -> None:
-    """Move places that are nearer to each other than twice `reach` apart, within ± `limit` (m)."""
+    """Move places within ± `limit` until their distances are at least twice `reach` (m)."""
     n = len(positions)
     pairs = np.zeros(n * (n - 1) // 2, dtype=PAIR)
     pairs["first"], pairs["second"] = np.triu_indices(n, 1)
@@ -84,5 +98,5 @@ def _part(positions: Floats, limit: float, reach: float) -> None:
 
 
 def _nearest(positions: Floats) -> float:
-    """Return the least distance between two places (m)."""
+    """Return the minimum distance between two places (m)."""
     return float(pdist(positions).min())
