@@ -1,7 +1,7 @@
 """Starting places of robots: uniformly at random, without overlap (specification, section 3.1).
 
-Each robot takes the first free place that it draws. In a crowd, a robot without a free draw takes the roomiest
-of its last draws; finally, all robots are parted as wedged bodies are.
+Each robot takes the first free place that it draws. In a crowd, a robot without a free draw takes the
+roomiest of its last draws; finally, all robots are parted as wedged bodies are.
 """
 
 import math

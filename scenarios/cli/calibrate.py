@@ -8,9 +8,9 @@ from typing import Annotated, Any
 
 import typer
 
-from kswarms.scenarios.catalogue.selecting import integers, words
 from kswarms.scenarios.cli.options import CPUS, Jobs, parse_directory
 from kswarms.scenarios.cli.progress import track
+from kswarms.scenarios.description.text import parse_integers, split_words
 from kswarms.scenarios.runs.run import Run
 
 
@@ -54,9 +54,9 @@ def calibrate(
 
     options: dict[str, Any] = {"seeds": seeds, "generations": generations, "population": population}
     if free is not None:
-        options["free"] = words(free)
+        options["free"] = split_words(free)
     if densities is not None:
-        options["densities"] = integers("densities", densities)
+        options["densities"] = parse_integers("densities", densities)
     setup = fit.Setup(**options, validation_seeds=validation_seeds)
     table = table_6_1()
     target = {

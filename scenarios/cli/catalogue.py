@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
-from kswarms.scenarios.catalogue.selecting import chosen
+from kswarms.scenarios.catalogue.selection import select_scenarios
 from kswarms.scenarios.cli.options import complete_ids
 from kswarms.scenarios.cli.printing import format_duration, print_columns
 from kswarms.scenarios.description.condition import Condition
@@ -56,7 +56,7 @@ def show(
 
     Example: kswarms show fig-6.1c
     """
-    scenarios = chosen([wanted])
+    scenarios = select_scenarios([wanted])
     typer.echo(
         toml_of(scenarios) if len(scenarios) > 1 or wanted in TABLES else scenarios[0].to_toml(), nl=False
     )

@@ -10,7 +10,7 @@ import typer
 
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.limits import MOST_SEEDS
-from kswarms.scenarios.catalogue.selecting import chosen
+from kswarms.scenarios.catalogue.selection import select_scenarios
 from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, complete_scenario_ids, parse_directory
 from kswarms.scenarios.cli.printing import print_table
 from kswarms.scenarios.cli.progress import track
@@ -56,7 +56,7 @@ def contribution(
 
     Example: kswarms contribution fig-6.4b --n 16 --robots S2 --seeds 5
     """
-    scenarios = chosen([wanted])
+    scenarios = select_scenarios([wanted])
     if len(scenarios) > 1:
         raise InputError("id", wanted, f"must be one scenario: {', '.join(each.id for each in scenarios)}")
     scenario = scenarios[0]

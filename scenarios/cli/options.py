@@ -9,7 +9,7 @@ import typer
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.limits import LAST_SEED, MOST_JOBS
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
-from kswarms.scenarios.catalogue.selecting import FIRST_SCENARIO, USUAL_N, chosen
+from kswarms.scenarios.catalogue.selection import FIRST_SCENARIO, USUAL_N, select_scenarios
 from kswarms.scenarios.runs.run import Run, digest
 
 CPUS: Final = os.cpu_count() or 1
@@ -104,7 +104,7 @@ def resolve_run(what: str | None, run: str, condition: str | None, n: int | None
             if value is not None:
                 raise InputError(field, value, "must not be given with a run, which has its own")
         return start
-    found = chosen([start])[0]
+    found = select_scenarios([start])[0]
     name = found.conditions[0].name if condition is None else condition
     if n is None:
         n = min(found.densities, key=lambda density: abs(density - USUAL_N))

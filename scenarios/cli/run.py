@@ -11,11 +11,12 @@ import typer
 from kswarms.agents.common.columns import RECORDED_TABLES
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
-from kswarms.scenarios.catalogue.selecting import chosen, integers, planned, words
+from kswarms.scenarios.catalogue.selection import select_scenarios, with_densities_and_seeds
 from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, complete_ids, parse_directory
 from kswarms.scenarios.cli.printing import print_table
 from kswarms.scenarios.cli.progress import Kind, show_progress
 from kswarms.scenarios.description.scenario import Scenario
+from kswarms.scenarios.description.text import parse_integers, split_words
 
 
 def run(
@@ -71,10 +72,13 @@ def run(
     ids = ids or []
     if bool(ids) == everything:
         raise InputError("id", " ".join(ids), "must be one or more of `kswarms list`, or none with --all")
-    scenarios, left_out = planned(
-        chosen(ids or CATALOGUE), integers("densities", densities), seeds, suitable_only=everything
+    scenarios, left_out = with_densities_and_seeds(
+        select_scenarios(ids or CATALOGUE),
+        parse_integers("densities", densities),
+        seeds,
+        suitable_only=everything,
     )
-    records = words(record)
+    records = split_words(record)
     for name in records:
         if name not in RECORDED_TABLES:
             raise InputError("record", name, f"must be among {', '.join(RECORDED_TABLES)}")

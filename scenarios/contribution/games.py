@@ -18,7 +18,7 @@ from kswarms.agents.policies.learner import Learner
 from kswarms.agents.policies.spec import PolicySpec, deal
 from kswarms.agents.streams import Streams
 from kswarms.model.description.game import Game
-from kswarms.scenarios.catalogue.selecting import words
+from kswarms.scenarios.description.text import split_words
 from kswarms.scenarios.runs.outcome import Outcome
 from kswarms.scenarios.runs.run import Run, digest
 from kswarms.scenarios.runs.sweep import play_all
@@ -66,7 +66,7 @@ def robots_of(game: Game, text: str | None) -> tuple[int, ...]:
         first += swarm.size
     known = {str(robot): range(robot, robot + 1) for robot in range(first)} | members
     robots: set[int] = set()
-    for word in members if text is None else words(text) or [""]:
+    for word in members if text is None else split_words(text) or [""]:
         if word not in known:
             raise InputError(
                 "robots", word, f"must be robots, 0 to {first - 1}, or swarms, {', '.join(members)}"

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import solara
 
-from kswarms.scenarios.catalogue.selecting import FIRST_SCENARIO
+from kswarms.scenarios.catalogue.selection import FIRST_SCENARIO
 from kswarms.scenarios.explore.controls import Controls
 from kswarms.scenarios.explore.panels import Panels
 from kswarms.scenarios.explore.playback import SPEEDS

@@ -9,8 +9,9 @@ from typing import Any
 
 from kswarms.agents.policies.editing import with_learning
 from kswarms.agents.policies.learner import Learner
-from kswarms.scenarios.catalogue.selecting import USUAL_N, chosen, integers
+from kswarms.scenarios.catalogue.selection import USUAL_N, select_scenarios
 from kswarms.scenarios.description.condition import Condition, SwarmRule
+from kswarms.scenarios.description.text import parse_integers
 from kswarms.scenarios.explore.form import Form, with_parameter
 from kswarms.scenarios.explore.playback import Playback
 from kswarms.scenarios.runs.play import run_errors
@@ -27,7 +28,7 @@ class Session(Playback):
     Parameters
     ----------
     start : str or Run
-        Scenario, as `kswarms.scenarios.catalogue.selecting.chosen` takes it, or run.
+        Scenario, as `kswarms.scenarios.catalogue.selection.select_scenarios` takes it, or run.
 
     Attributes
     ----------
@@ -115,7 +116,7 @@ class Session(Playback):
     def change_absent(self, text: str) -> None:
         """Set the absent robots: numbers separated by commas; none for an empty text."""
         with self.report_errors():
-            self.change(absent=integers("absent", text or None))
+            self.change(absent=parse_integers("absent", text or None))
 
     def select(self, robot: int) -> None:
         """Select a robot."""
@@ -126,7 +127,7 @@ class Session(Playback):
         return _step(self.form)
 
     def _open(self, source: str) -> None:
-        scenarios = chosen([source])
+        scenarios = select_scenarios([source])
         several = len(scenarios) > 1
         self.source = source
         self.title = "; ".join(scenario.title for scenario in scenarios)

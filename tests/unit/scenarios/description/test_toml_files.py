@@ -6,7 +6,7 @@ import pytest
 
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
-from kswarms.scenarios.catalogue.selecting import chosen
+from kswarms.scenarios.catalogue.selection import select_scenarios
 from kswarms.scenarios.description.scenario import toml_of
 from kswarms.scenarios.description.toml_files import read_scenarios
 
@@ -34,7 +34,7 @@ def test_what_show_prints_is_read_again(tmp_path: Path) -> None:
 
 def test_a_file_says_no_more_than_what_differs_from_the_defaults(tmp_path: Path) -> None:
     (tmp_path / "hunt.toml").write_text(HUNT)
-    (hunt,) = chosen([str(tmp_path / "hunt.toml")])
+    (hunt,) = select_scenarios([str(tmp_path / "hunt.toml")])
     assert [rule.policy for rule in hunt.conditions[0].swarms] == ["avoid", "aggressive"]
     assert hunt.conditions[0].sizes(9) == [6, 3]
     assert hunt.conditions[0].layout == CATALOGUE["fig-6.1a"].conditions[0].layout
@@ -99,7 +99,8 @@ def test_the_mark_that_some_editors_put_first_is_no_mistake(tmp_path: Path) -> N
 def test_two_scenarios_of_one_id_must_be_the_same(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     file.write_text(CATALOGUE["fig-6.1c"].to_toml())
-    assert chosen(["fig-6.1c", str(file), "fig-6.1a"]) == [CATALOGUE["fig-6.1c"], CATALOGUE["fig-6.1a"]]
+    first, second = select_scenarios(["fig-6.1c", str(file), "fig-6.1a"])
+    assert (first, second) == (CATALOGUE["fig-6.1c"], CATALOGUE["fig-6.1a"])
     file.write_text(CATALOGUE["fig-6.1c"].replace(seeds=3).to_toml())
     with pytest.raises(InputError, match=r"id='fig-6.1c': must name one scenario, not two that differ"):
-        chosen(["fig-6.1c", str(file)])
+        select_scenarios(["fig-6.1c", str(file)])

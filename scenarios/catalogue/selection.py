@@ -1,0 +1,95 @@
+"""Selection of scenarios by id or file."""
+
+import difflib
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Final
+
+from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.catalogue import CATALOGUE, TABLES
+from kswarms.scenarios.description.scenario import Scenario
+from kswarms.scenarios.description.toml_files import read_scenarios
+
+FIRST_SCENARIO: Final = "fig-6.1c"
+"""Default scenario of `kswarms explore` and `kswarms film`."""
+USUAL_N: Final = 20
+"""Their default number of robots; rounded to a multiple that the scenario allows."""
+
+
+def select_scenarios(ids: Iterable[str]) -> list[Scenario]:
+    """Return scenarios by their ids, each once.
+
+    Parameters
+    ----------
+    ids : iterable of str
+        Ids of scenarios, ids of tables, which stand for all their scenarios, and paths of files that end in
+        ``.toml``.
+
+    Raises
+    ------
+    InputError
+        If an id or file does not exist, or two different scenarios have the same id.
+    """
+    found: dict[str, Scenario] = {}
+    for name in ids:
+        scenarios = read_scenarios(Path(name)) if name.endswith(".toml") else _from_catalogue(name)
+        for scenario in scenarios:
+            if found.setdefault(scenario.id, scenario) != scenario:
+                raise InputError("id", scenario.id, "must name one scenario, not two that differ")
+    return list(found.values())
+
+
+def _from_catalogue(name: str) -> list[Scenario]:
+    if name not in CATALOGUE and name not in TABLES:
+        near = difflib.get_close_matches(name, [*CATALOGUE, *TABLES], cutoff=0.5)
+        hint = f"did you mean {' or '.join(near)}?" if near else "see `kswarms list`"
+        raise InputError("id", name, f"must be a scenario or table of the list; {hint}")
+    return [CATALOGUE[each] for each in (TABLES[name].scenarios if name in TABLES else [name])]
+
+
+def with_densities_and_seeds(
+    scenarios: Iterable[Scenario], densities: Sequence[int], seeds: int | None, suitable_only: bool
+) -> tuple[list[Scenario], list[str]]:
+    """Replace the densities and the number of seeds of scenarios.
+
+    Parameters
+    ----------
+    scenarios : iterable of Scenario
+        The scenarios.
+    densities : sequence of int
+        Numbers of robots; if empty, each scenario keeps its own.
+    seeds : int, optional
+        Number of games per density; by default, each scenario keeps its own.
+    suitable_only : bool
+        Whether densities that do not suit a scenario are dropped for it instead of refused. A scenario
+        without a suitable density is left out.
+
+    Returns
+    -------
+    scenarios : list of Scenario
+        The changed scenarios.
+    left_out : list of str
+        Ids of scenarios without a suitable density.
+
+    Raises
+    ------
+    InputError
+        If a density or the number of seeds is not allowed, or no scenario remains.
+    """
+    playable, left_out = [], []
+    for scenario in scenarios:
+        suitable = tuple(n for n in densities if not suitable_only or scenario.allows(n))
+        if densities and not suitable:
+            left_out.append(scenario.id)
+            continue
+        changes = {
+            "densities": suitable or scenario.densities,
+            "seeds": scenario.seeds if seeds is None else seeds,
+        }
+        try:
+            playable.append(scenario.replace(**changes))
+        except InputError as error:
+            raise InputError(error.field, error.value, f"{error.allowed} ({scenario.id})") from None
+    if not playable:
+        raise InputError("densities", ",".join(map(str, densities)), "must suit some scenario")
+    return playable, left_out
