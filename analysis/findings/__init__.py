@@ -1,13 +1,10 @@
-"""Findings: sentences about outcomes that results decide (section 3.4 of the experiments).
-
-`FINDINGS` are those of the thesis; `load` reads others from TOML; `judge` says whether one holds.
-"""
+"""Findings: statements about outcomes that results decide (section 3.4 of the experiments)."""
 
 from collections.abc import Iterable
 from importlib.resources import files
 from typing import Final
 
-from kswarms.analysis.findings.claims import Finding, load, parse
+from kswarms.analysis.findings.finding import Finding, load, parse
 from kswarms.analysis.findings.judging import judge
 from kswarms.analysis.findings.verdicts import FAILS, HOLDS, NO_DATA, UNDECIDED, Verdict
 from kswarms.analysis.results.runs import Results
@@ -26,9 +23,9 @@ __all__ = [
 ]
 
 FINDINGS: Final = parse(files(__name__).joinpath("thesis.toml").read_text(encoding="utf-8"), "thesis.toml")
-"""What the source found, as far as its outcomes are given."""
+"""Findings of the thesis, as far as it states its outcomes."""
 
 
 def judge_all(results: Results, findings: Iterable[Finding] = FINDINGS) -> list[Verdict]:
-    """Judge findings one after the other, in their order, as `judge` does."""
+    """Judge findings in their order, as `judge` does."""
     return [judge(finding, results) for finding in findings]

@@ -7,7 +7,8 @@ import numpy as np
 import pandas as pd
 
 from kswarms.analysis.findings import Finding, Verdict, judge
-from kswarms.analysis.findings.claims import Claim, Compare, Quantity
+from kswarms.analysis.findings.claims import Claim, Compare
+from kswarms.analysis.findings.quantity import Quantity
 from kswarms.analysis.results.runs import Results
 
 DENSITIES = (6, 16, 30, 40, 50)

@@ -8,8 +8,9 @@ import pytest
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.findings import FINDINGS, HOLDS, judge, load
-from kswarms.analysis.findings.claims import UNITS, Compare, Quantity
+from kswarms.analysis.findings.claims import Compare
 from kswarms.analysis.findings.data import sample
+from kswarms.analysis.findings.quantity import UNITS, Quantity
 from kswarms.analysis.results.runs import Results
 from kswarms.scenarios.catalogue import CATALOGUE
 

@@ -10,7 +10,8 @@ from scipy import stats
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.findings import FAILS, FINDINGS, HOLDS, NO_DATA, UNDECIDED, Verdict, judge_all
-from kswarms.analysis.findings.claims import Agreement, Claim, Compare, Overtake, Peak, Quantity, Share, Trend
+from kswarms.analysis.findings.claims import Agreement, Claim, Compare, Overtake, Peak, Share, Trend
+from kswarms.analysis.findings.quantity import Quantity
 from kswarms.analysis.findings.verdicts import Region
 from kswarms.analysis.results.published import table_6_1
 from kswarms.analysis.results.runs import Results
@@ -148,10 +149,10 @@ def test_agreement_with_the_published_table(off: float, expected: str) -> None:
     [
         (more(right=Quantity(scenario="other", swarm=1)), "no runs of other S1"),
         (more(left=Quantity(scenario="duel", condition="x", swarm=3)), "no runs of duel condition 'x' S3"),
-        (more(densities=(26, 46)), "nothing played at N = 26, 46"),
-        (Overtake(ahead=S2, behind=S1, between=(30, 36)), "nothing played at N = 36"),
-        (Peak(quantity=S2, densities=(6, 16)), "N = 6, 16: a rise and a fall take three densities"),
-        (Trend(quantity=S2, densities=(6, 16)), "N = 6, 16: a trend takes three densities"),
+        (more(densities=(26, 46)), "no runs at N = 26, 46"),
+        (Overtake(ahead=S2, behind=S1, between=(30, 36)), "no runs at N = 36"),
+        (Peak(quantity=S2, densities=(6, 16)), "N = 6, 16: a rise and a fall need three densities"),
+        (Trend(quantity=S2, densities=(6, 16)), "N = 6, 16: a trend needs three densities"),
         (Share(quantity=WITHIN, above=99), "no runs of fig-6.8 S2 (learned_flight_within)"),
         (Agreement(cells=(LEARNED,), margin=5), "no runs of fig-6.4a S2 (learned_attack)"),
     ],
@@ -163,21 +164,21 @@ def test_what_has_not_been_played(claim: Claim, note: str) -> None:
 
 def test_nothing_published_of_these_densities() -> None:
     verdict = verdict_on(Agreement(cells=(LEARNED,), margin=5), learners([0.0], densities=(8,)))
-    assert (verdict.verdict, verdict.note) == (NO_DATA, "nothing published of N = 8")
+    assert (verdict.verdict, verdict.note) == (NO_DATA, "nothing published at N = 8")
 
 
 def test_scenarios_played_at_different_densities_cannot_be_compared() -> None:
     other = runs([LEVEL[:2]], densities=(8, 18), scenario="other")
     results = Results(pd.concat([duel(FAR).runs, other]))
     verdict = verdict_on(more(right=Quantity(scenario="other", swarm=1)), results)
-    assert (verdict.verdict, verdict.note) == (NO_DATA, "nothing played at the same N")
+    assert (verdict.verdict, verdict.note) == (NO_DATA, "no runs at the same N")
 
 
 @pytest.mark.parametrize(
     ("over", "note"),
     [
-        ("each N", "no seed has been played on both sides at N = 6, 16, 30, 40, 50"),
-        ("mean over N", "no seed has been played at all of N = 6, 16, 30, 40, 50"),
+        ("each N", "no seed on both sides at N = 6, 16, 30, 40, 50"),
+        ("mean over N", "no seed at all of N = 6, 16, 30, 40, 50"),
     ],
 )
 def test_other_seeds_are_no_pairs(over: str, note: str) -> None:

@@ -3,7 +3,8 @@
 import pytest
 
 from kswarms.analysis.findings import FAILS, HOLDS, NO_DATA, UNDECIDED, Verdict
-from kswarms.analysis.findings.claims import Claim, Compare, Overtake, Peak, Quantity, Trend
+from kswarms.analysis.findings.claims import Claim, Compare, Overtake, Peak, Trend
+from kswarms.analysis.findings.quantity import Quantity
 from kswarms.analysis.results.runs import Results
 from tests.helpers.made_up_results import BEHIND, FAR, S1, S2, TIE, duel, more, verdict_on
 
@@ -16,7 +17,7 @@ def test_a_verdict_at_every_density_shows_the_one_that_decides() -> None:
     assert verdict.low is not None
     assert verdict.high is not None
     assert 0 < verdict.low < 3 < verdict.high
-    assert verdict.note == "N = 6, 16, 30, 40, 50; the numbers are of N = 16, where it is least so"
+    assert verdict.note == "N = 6, 16, 30, 40, 50; numbers of N = 16, where the claim is weakest"
     failed = verdict_on(more(), duel([5, -4, 5, -9, 5]))
     assert failed.effect == pytest.approx(-9)
     assert failed.note.endswith("false at N = 16, 40")
@@ -34,9 +35,9 @@ def test_a_verdict_in_a_line() -> None:
 def test_an_undecided_verdict_says_how_many_seeds_would_decide() -> None:
     verdict = verdict_on(more(), duel([5, 0.5, 5, 5, 5]))
     assert verdict.verdict == UNDECIDED
-    assert "sure at N = 6, 30, 40, 50" in verdict.note
-    assert "more seeds decide it (power 80%)" in verdict.note
-    assert "no number of seeds would decide it" in verdict_on(more(over="mean over N"), duel(TIE)).note
+    assert "true at N = 6, 30, 40, 50" in verdict.note
+    assert "more seeds decide (power 80%)" in verdict.note
+    assert "no number of seeds decides" in verdict_on(more(over="mean over N"), duel(TIE)).note
 
 
 def test_a_density_that_is_missing_is_named() -> None:
@@ -58,7 +59,7 @@ def test_a_density_that_is_missing_is_named() -> None:
 def test_too_few_seeds_decide_nothing(claim: Claim) -> None:
     verdict = verdict_on(claim, duel([-9, 9, 99, 9, 9], seeds=4))
     assert (verdict.verdict, verdict.low, verdict.high, verdict.seeds) == (UNDECIDED, None, None, 4)
-    assert verdict.note.endswith("seeds at least")
+    assert verdict.note.endswith("seeds")
 
 
 def test_to_fail_at_one_of_many_densities_takes_more_seeds_than_at_one() -> None:
@@ -76,8 +77,8 @@ def test_a_single_seed_gives_its_number_alone() -> None:
 def test_a_lead_in_doubt_at_either_end_is_told() -> None:
     verdict = verdict_on(Overtake(ahead=S2, behind=S1, between=(16, 30)), duel([1, 1, 1, 1, 0.5]))
     assert (verdict.verdict, verdict.low, verdict.high) == (UNDECIDED, None, None)
-    assert "perhaps ahead from N = 6 on" in verdict.note
-    assert "perhaps not ahead at N = 50" in verdict.note
+    assert "possibly ahead from N = 6 on" in verdict.note
+    assert "possibly not ahead at N = 50" in verdict.note
     assert (
         "the mean curves do not cross"
         in verdict_on(Overtake(ahead=S2, behind=S1, between=(16, 30)), duel(FAR)).note

@@ -1,0 +1,77 @@
+"""Findings as data: a statement and its claim, and lists of them in TOML."""
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.findings.claims import Claim
+from kswarms.analysis.statistics.intervals import CONFIDENCE
+
+
+class Finding(Checked):
+    """A statement about outcomes, and the claim by which results decide it.
+
+    Attributes
+    ----------
+    id : str
+        Short name.
+    statement : str
+        A sentence.
+    source : str
+        Section and figure that state it.
+    claim : Claim
+        The statement in a form that can be tested.
+    confidence : float
+        Level of the intervals that decide.
+    """
+
+    id: str = Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")
+    statement: str = Field(min_length=1)
+    source: str = ""
+    claim: Annotated[Claim, Field(discriminator="kind")]
+    confidence: float = Field(default=CONFIDENCE, gt=0, lt=1)
+
+    @property
+    def scenarios(self) -> tuple[str, ...]:
+        """Ids of the scenarios that the claim is about."""
+        return tuple(dict.fromkeys(quantity.scenario for quantity in self.claim.quantities))
+
+
+class _File(Checked):
+    findings: tuple[Finding, ...] = Field(min_length=1)
+
+    @model_validator(mode="after")
+    def _check_ids(self) -> Self:
+        ids = [finding.id for finding in self.findings]
+        for name in ids:
+            if ids.count(name) > 1:
+                raise InputError("findings.id", name, "must be given once")
+        return self
+
+
+def load(path: Path) -> tuple[Finding, ...]:
+    """Read findings from a TOML file with an array of tables ``findings``.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is not TOML, or holds anything but findings.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError("findings", str(path), "must be a readable TOML file") from error
+    return parse(text, str(path))
+
+
+def parse(text: str, name: str) -> tuple[Finding, ...]:
+    """Read findings from TOML text; errors as for `load` refer to it as `name`."""
+    try:
+        content = tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise InputError("findings", name, f"must be TOML: {error}") from error
+    return _File(**content).findings
