@@ -31,7 +31,7 @@ def contribution(
         str | None,
         typer.Option(metavar="NAME", help="Condition of the scenario, required if it has several."),
     ] = None,
-    n: Annotated[int, typer.Option(help="Robots in all; the shares of the swarms must divide it.")] = 26,
+    n: Annotated[int, typer.Option(help="Robots in all, a multiple of the sum of the shares.")] = 26,
     robots: Annotated[
         str | None,
         typer.Option(metavar="LIST", help="Robots, from 0, and swarms: 3,7 or S2. [default: all]"),

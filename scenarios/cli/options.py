@@ -66,7 +66,7 @@ ConditionName = Annotated[
 ]
 Robots = Annotated[
     int | None,
-    typer.Option("--n", help="Robots in all; the shares of the swarms must divide it. [default: near 20]"),
+    typer.Option("--n", help="Robots in all, a multiple of the sum of the shares. [default: near 20]"),
 ]
 Seed = Annotated[
     int | None, typer.Option("--seed", min=0, max=LAST_SEED, help="Seed of the game. [default: 0]")

@@ -3,8 +3,9 @@
 import json
 import sys
 import time
-from collections.abc import Iterable, Iterator, Sequence
-from typing import Final, Literal, TypeVar
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, Final, Literal, TypeVar
 
 import typer
 
@@ -68,59 +69,52 @@ def show_progress(played: Iterable[Result], runs: Sequence[Run], kind: Kind) -> 
         How; nothing is shown without runs.
     """
     count = Count(runs)
-    show = {"bar": _bar, "json": _lines, "none": _nothing}[kind if runs else "none"]
-    return show(_counted(played, count), count)
+    show = {"bar": _bar, "json": _json_lines, "none": _nothing}[kind if runs else "none"]
+    with show(count) as report:
+        for run, result, _ in played:
+            count.add(run, isinstance(result, Failure))
+            report(run.labels[0][0])
+            yield count
 
 
-def _counted(played: Iterable[Result], count: Count) -> Iterator[Run]:
-    for run, result, _ in played:
-        count.add(run, isinstance(result, Failure))
-        yield run
+@contextmanager
+def _nothing(_: Count) -> Iterator[Callable[[str], None]]:
+    yield lambda _: None
 
 
-def _nothing(ended: Iterator[Run], count: Count) -> Iterator[Count]:
-    for _ in ended:
-        yield count
-
-
-def _lines(ended: Iterator[Run], count: Count) -> Iterator[Count]:
+@contextmanager
+def _json_lines(count: Count) -> Iterator[Callable[[str], None]]:
     printed_at = -_LINE_EVERY
-    for run in ended:
+
+    def report(scenario: str) -> None:
+        nonlocal printed_at
         if time.monotonic() >= printed_at + _LINE_EVERY or count.done == count.total:
             printed_at = time.monotonic()
-            line = {
-                "done": count.done,
-                "failed": count.failed,
-                "total": count.total,
-                "runs_per_second": round(count.rate, 3),
-                "seconds_left": round(count.left, 1),
-                "scenario": run.labels[0][0],
-            }
-            typer.echo(json.dumps(line), err=True)
-        yield count
+            line: dict[str, Any] = {"done": count.done, "failed": count.failed, "total": count.total}
+            line |= {"runs_per_second": round(count.rate, 3), "seconds_left": round(count.left, 1)}
+            typer.echo(json.dumps(line | {"scenario": scenario}), err=True)
+
+    yield report
 
 
-def _bar(ended: Iterator[Run], count: Count) -> Iterator[Count]:
+@contextmanager
+def _bar(count: Count) -> Iterator[Callable[[str], None]]:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn
 
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.fields[runs]} runs, {task.fields[rate]}/s, {task.fields[left]} left"),
-    )
-    with Progress(*columns, console=Console(file=sys.stderr)) as progress:
-        task = progress.add_task("starting", total=count.work, runs=f"0/{count.total}", rate="–", left="–")
-        for run in ended:
-            progress.update(
-                task,
-                completed=count.worked,
-                description=run.labels[0][0],
-                runs=f"{count.done}/{count.total}" + (f" ({count.failed} failed)" if count.failed else ""),
-                rate=f"{count.rate:.3g}",
-                left=format_duration(count.left),
-            )
-            yield count
+    state = TextColumn("{task.fields[state]}")
+    with Progress(
+        TextColumn("{task.description}"), BarColumn(), state, console=Console(file=sys.stderr)
+    ) as progress:
+        task = progress.add_task("starting", total=count.work, state=f"0/{count.total} runs")
+
+        def report(scenario: str) -> None:
+            failed = f" ({count.failed} failed)" if count.failed else ""
+            state = f"{count.done}/{count.total}{failed} runs, {count.rate:.3g}/s, "
+            state += f"{format_duration(count.left)} left"
+            progress.update(task, completed=count.worked, description=scenario, state=state)
+
+        yield report
 
 
 def track(steps: Iterable[_Step], doing: str, total: int) -> Iterable[_Step]:

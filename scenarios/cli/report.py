@@ -45,21 +45,11 @@ def report(
         if finding.id in {each.id for each in FINDINGS}:
             raise InputError("findings.id", finding.id, "must not be that of a finding of the thesis")
     plan = {
-        name: Planned(
-            scenario.title,
-            tuple(condition.name for condition in scenario.conditions),
-            scenario.densities,
-            scenario.seeds,
-        )
-        for name, scenario in CATALOGUE.items()
+        name: Planned(each.title, tuple(c.name for c in each.conditions), each.densities, each.seeds)
+        for name, each in CATALOGUE.items()
     }
     built = build_report(
-        directory,
-        plan,
-        TABLES,
-        findings=(*FINDINGS, *own),
-        places_of=_arena,
-        progress=_progress,
+        directory, plan, TABLES, findings=(*FINDINGS, *own), places_of=_arena, progress=_progress
     )
     if files is not None:
         typer.echo(f"files:  {files} ({built.write_files(files)} files)")

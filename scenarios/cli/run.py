@@ -36,7 +36,7 @@ def run(
         str | None,
         typer.Option(
             metavar="N,N,...",
-            help="Robots in all; the shares of the swarms must divide each. [default: the scenario's]",
+            help="Robots in all, multiples of the sum of the shares. [default: the scenario's]",
         ),
     ] = None,
     seeds: Annotated[

@@ -116,17 +116,9 @@ def _Conflicts(session: Session, beat: solara.Reactive[int], act: Act) -> None:
 
 
 _HEADER: Final = (
-    "t (s)",
-    "who →\nmet",
-    "where\n(m)",
-    "known:\nQ (N)",
-    "chose\nR (s)",
-    "Q\nafter",
-    "T(a)\n(s)",
-    "T(p)\n(s)",
-    "n′",
-    "saw",
-)
+    "t (s)", "who →\nmet", "where\n(m)", "known:\nQ (N)", "chose\nR (s)",
+    "Q\nafter", "T(a)\n(s)", "T(p)\n(s)", "n′", "saw",
+)  # fmt: skip
 
 
 def _conflict_row(conflict: WatchedConflict, begin: float) -> list[str]:

@@ -36,9 +36,13 @@ def serve(start: str | Run, port: int, open_browser: bool, ready: Callable[[str]
     InputError
         If the port is not available.
     """
-    with _listen(port) as listener:
+    try:
+        listener = socket.create_server((HOST, port))
+    except OSError:
+        raise InputError("port", port, "must be a free port of this machine, 0 for any") from None
+    with listener:
         address = f"http://localhost:{listener.getsockname()[1]}"
-        server = _server(start)
+        server = _create_server(start)
 
         def announce() -> None:
             while not server.started:
@@ -51,14 +55,7 @@ def serve(start: str | Run, port: int, open_browser: bool, ready: Callable[[str]
         server.run(sockets=[listener])
 
 
-def _listen(port: int) -> socket.socket:
-    try:
-        return socket.create_server((HOST, port))
-    except OSError:
-        raise InputError("port", port, "must be a free port of this machine, 0 for any") from None
-
-
-def _server(start: str | Run) -> "uvicorn.Server":
+def _create_server(start: str | Run) -> "uvicorn.Server":
     """Return a server of the page that contacts no other machine."""
     os.environ["SOLARA_APP"] = "kswarms.scenarios.explore.page"
     import uvicorn

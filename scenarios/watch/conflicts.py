@@ -122,19 +122,8 @@ def conflicts_of(run: Run) -> list[WatchedConflict]:
 
 
 HEADINGS: Final = (
-    "t (s)",
-    "who",
-    "met",
-    "where (m)",
-    "known: Q (N)",
-    "chose",
-    "T(a)",
-    "T(p)",
-    "n′",
-    "saw",
-    "R",
-    "Q after",
-)
+    "t (s)", "who", "met", "where (m)", "known: Q (N)", "chose", "T(a)", "T(p)", "n′", "saw", "R", "Q after"
+)  # fmt: skip
 """Headings of the cells of `conflict_cells`; times in seconds."""
 
 

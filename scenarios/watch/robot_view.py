@@ -132,18 +132,8 @@ def _read_sensors(model: GameModel, index: int) -> tuple[Sensor, ...]:
     row = model.states.robots[index]
     free = np.empty(SENSORS)
     others = np.arange(len(model.robots))
-    sense(
-        index,
-        row["forward_x"],
-        row["forward_y"],
-        model.states.positions,
-        others,
-        len(others),
-        body.radius,
-        model.arena.half,
-        reach,
-        free,
-    )
+    state = row["forward_x"], row["forward_y"], model.states.positions
+    sense(index, *state, others, len(others), body.radius, model.arena.half, reach, free)
     limit = body.sensing_scale * parameters.active_range
     return tuple(
         Sensor(sensor * 2 * math.pi / SENSORS, min(distance, reach), distance <= limit)
