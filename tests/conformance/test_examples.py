@@ -1,4 +1,4 @@
-"""The classes of the documentation pass what is asked of every class of a user's own."""
+"""The classes of the documentation pass the conformance checks."""
 
 from collections.abc import Callable
 from functools import partial
@@ -38,7 +38,7 @@ def test_a_rule_passes_every_check(check: Check) -> None:
 
 
 class Restless(WLU):
-    """Has a state that a frozen description cannot have."""
+    """Changes itself although it is frozen."""
 
     def of(self, *conflict: Any) -> float:
         object.__setattr__(self, "delta", self.delta / 2 if isinstance(self.delta, float) else self.delta)
@@ -46,7 +46,7 @@ class Restless(WLU):
 
 
 class Unequal(Greedy):
-    """Is itself alone."""
+    """Equals only itself."""
 
     def __eq__(self, other: object) -> bool:
         return self is other
@@ -54,7 +54,7 @@ class Unequal(Greedy):
     __hash__ = Greedy.__hash__
 
 
-def test_a_failed_check_says_what_is_wrong() -> None:
+def test_a_failed_check_has_a_message() -> None:
     rewards, rules = ({check.__name__: check for check in checks} for checks in (REWARD_CHECKS, RULE_CHECKS))
     with pytest.raises(AssertionError, match="its use changes it"):
         rewards["check_frozen"](Restless)

@@ -1,8 +1,8 @@
-"""What every policy must do: a new one in `POLICIES` is checked by all of this without another line.
+"""Conformance of all policies in `POLICIES`.
 
-What users' policies must do too is in `kswarms.agents.conformance`. Here are the checks of the package's own.
-Policies that learn are checked with every reward and every rule. Each check is a function of what builds a
-policy, and has a policy that it must turn down.
+Checks of user-defined policies too are in `kswarms.agents.conformance`. The others are for the policies of
+the package. Learners are checked with every reward and rule. Each check takes a factory, and has a policy
+that fails it.
 """
 
 import copy
@@ -29,7 +29,7 @@ from kswarms.agents.policies.spec import Factory, make_policy
 from kswarms.agents.streams import Purpose
 
 ARGUMENTS = {"learned": "(file={file!r})"}
-"""What a policy cannot be built without."""
+"""Required arguments."""
 TEXTS = [
     *(name + ARGUMENTS.get(name, "") for name in POLICIES),
     *(f"learner(reward='{reward}', rule='{rule}')" for reward, rule in product(REWARDS, RULES)),
@@ -44,8 +44,8 @@ def check_repr_tells_the_swarm_and_no_address(build: Factory) -> None:
     assert len(text.splitlines()) == 1
 
 
-def check_a_stopped_learner_is_deaf(build: Factory) -> None:
-    """Even told, it keeps to what it knows, and has nothing to answer."""
+def check_a_frozen_learner_ignores_conflicts(build: Factory) -> None:
+    """After freeze(), learn(…) changes nothing and returns NaN."""
     for where in settings():
         policy = build(where)
         if not hasattr(policy, "learn"):
@@ -66,7 +66,7 @@ def check_copies_look_alike(build: Factory) -> None:
 
 
 class Outsider:
-    """Does what the game does not know."""
+    """Returns an action that is not in the game."""
 
     def __init__(self, where: Setting) -> None:
         self.swarm = where.swarm
@@ -76,7 +76,7 @@ class Outsider:
 
 
 class Unseeded(Outsider):
-    """Draws from a stream that is not the robot's."""
+    """Draws from another source of randomness."""
 
     def __init__(self, where: Setting) -> None:
         super().__init__(where)
@@ -97,7 +97,7 @@ class Hive(Unseeded):
 
 
 class Unpicklable(Unseeded):
-    """Does not go on as it was."""
+    """Loses its state when pickled."""
 
     def choose(self, opponent: int) -> Action:
         self.met = getattr(self, "met", 0) + 1
@@ -119,7 +119,7 @@ class Greedy(Unseeded):
 
 
 class Unstoppable(Learner):
-    """Goes on exploring and learning."""
+    """Continues to explore and learn after freeze()."""
 
     def __init__(self, where: Setting) -> None:
         super().__init__(where, rule="uniform-random")
@@ -135,14 +135,14 @@ CHECKS: Final[dict[Check, Factory]] = {
     ),
     check_repr_tells_the_swarm_and_no_address: Outsider,
     check_copies_look_alike: Unpicklable,
-    check_a_stopped_learner_is_deaf: Unstoppable,
+    check_a_frozen_learner_ignores_conflicts: Unstoppable,
 }
-"""Every check, with a policy that must not pass it."""
+"""Each check with a policy that fails it."""
 
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[int, str]:
-    """Return files of learned policies, for each swarm that a robot may be of."""
+    """Return files of learned policies by swarm."""
     folder, paths = tmp_path_factory.mktemp("learned"), {}
     for swarm in range(3):
         learner = Learner(where := setting(swarm))
@@ -162,12 +162,12 @@ def test_every_policy_passes_every_check(text: str, check: Check, files: dict[in
 
 
 @pytest.mark.parametrize("check", CHECKS)
-def test_every_check_turns_a_bad_policy_down(check: Check) -> None:
+def test_every_check_refuses_a_bad_policy(check: Check) -> None:
     with pytest.raises(AssertionError):
         check(CHECKS[check])
 
 
-def test_names_are_as_users_write_them() -> None:
+def test_names_can_be_written_in_texts() -> None:
     for name in POLICIES:
         assert name == name.lower().strip()
         assert not set(name) & set("()+,'\" ")

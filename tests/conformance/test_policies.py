@@ -1,4 +1,4 @@
-"""What every fixed policy must do (section 2.4); a new one brings its name and what it chooses."""
+"""Fixed policies and their choices (section 2.4)."""
 
 import pickle
 from typing import Final
@@ -18,10 +18,10 @@ FIGHT: Final = Action(name="fight", direction=TOWARDS, duration=1.0)
 DASH: Final = Action(name="dash", direction=AWAY, duration=0.05)
 STANDARD: Final = (FLIGHT, FIGHT)
 OPEN: Final = (DASH, FLIGHT, FIGHT)
-"""A longer set, in which the first action of a direction is not the standard one."""
+"""More actions; the first of a direction is not the standard one."""
 
 CHOICES: Final = {
-    # name: within the own swarm and against others, of the standard actions; the same of the longer set
+    # name: (within the own swarm, against others) with the standard actions, and with `OPEN`
     "avoid": ((FLIGHT, FLIGHT), (DASH, DASH)),
     "attack": ((FLIGHT, FIGHT), (DASH, FIGHT)),
     "aggressive": ((FIGHT, FIGHT), (FIGHT, FIGHT)),
@@ -44,7 +44,7 @@ def choices(policy: Policy) -> list[Action]:
     return [policy.choose(opponent) for opponent in SWARMS]
 
 
-def test_every_policy_is_here() -> None:
+def test_the_error_for_unknown_names_lists_all_policies() -> None:
     with pytest.raises(InputError, match=r"must be one of (.+), or several") as refusal:
         made("nonsense", 0, STANDARD)
     named = refusal.value.allowed.removeprefix("must be one of ").partition(", or several")[0].split(", ")
@@ -54,7 +54,7 @@ def test_every_policy_is_here() -> None:
 @every_set
 @every_swarm
 @every_policy
-def test_it_chooses_by_kind_of_opponent(name: str, swarm: int, actions: tuple[Action, ...]) -> None:
+def test_choices_against_own_and_other_swarms(name: str, swarm: int, actions: tuple[Action, ...]) -> None:
     within, against = CHOICES[name][actions is OPEN]
     policy = made(name, swarm, actions)
     assert choices(policy) == [within if opponent == swarm else against for opponent in SWARMS]
@@ -63,7 +63,7 @@ def test_it_chooses_by_kind_of_opponent(name: str, swarm: int, actions: tuple[Ac
 @every_set
 @every_swarm
 @every_policy
-def test_it_chooses_the_same_again_and_after_pickling(
+def test_choices_are_repeatable_also_after_pickling(
     name: str, swarm: int, actions: tuple[Action, ...]
 ) -> None:
     policy, other = (made(name, swarm, actions) for _ in range(2))
@@ -72,7 +72,7 @@ def test_it_chooses_the_same_again_and_after_pickling(
 
 
 @every_policy
-def test_its_repr_tells_what_it_does(name: str) -> None:
+def test_repr_shows_the_actions(name: str) -> None:
     (within, against), _ = CHOICES[name]
     text = repr(made(name, 2, STANDARD))
     kind = "FixedPolicy" if name in ("flight", "fight") else name.capitalize()
@@ -80,7 +80,7 @@ def test_its_repr_tells_what_it_does(name: str) -> None:
 
 
 @every_policy
-def test_a_swarm_can_play_it_whole_or_in_part(name: str) -> None:
+def test_a_policy_can_be_played_by_all_robots_or_some(name: str) -> None:
     for policy in (name, f"{name}+avoid"):
         game = Game(swarms=(Swarm(policy=policy, size=3), Swarm(policy="avoid", size=1)))
         assert game.swarms[0].policy == policy
@@ -97,7 +97,7 @@ def test_the_name_of_an_action_is_a_policy() -> None:
     ("name", "actions"),
     [("attack", (FLIGHT,)), ("attack", (FIGHT,)), ("avoid", (FIGHT,)), ("aggressive", (FLIGHT, DASH))],
 )
-def test_a_policy_needs_actions_of_its_directions(name: str, actions: tuple[Action, ...]) -> None:
+def test_a_policy_requires_actions_of_its_directions(name: str, actions: tuple[Action, ...]) -> None:
     with pytest.raises(InputError, match=r"actions=\[.*\]: must have one of direction") as refusal:
         made(name, 0, actions)
     assert all(action.name in str(refusal.value) for action in actions)
@@ -120,7 +120,7 @@ def test_a_policy_needs_actions_of_its_directions(name: str, actions: tuple[Acti
         ("fight+flight", 4, "fight fight flight flight"),
     ],
 )
-def test_a_swarm_is_dealt_equal_shares_and_the_rest_to_the_first(policy: str, size: int, dealt: str) -> None:
+def test_policies_are_dealt_in_equal_shares(policy: str, size: int, dealt: str) -> None:
     assert list(map(str, deal(policy, size))) == dealt.split()
     Game(swarms=(Swarm(policy=policy, size=max(1, size)),))
 
@@ -132,6 +132,6 @@ def test_unknown_policies_are_refused(policy: str) -> None:
 
 
 @pytest.mark.parametrize("policy", ["mixed()", "avoid+mixed(of=2)"])
-def test_a_name_for_several_policies_takes_no_arguments(policy: str) -> None:
+def test_an_alias_takes_no_arguments(policy: str) -> None:
     with pytest.raises(InputError, match=r"^policy='mixed\(.*\)': stands for avoid\+aggressive, and"):
         Game(swarms=(Swarm(policy=policy, size=2),))

@@ -1,7 +1,7 @@
-"""What every reward must do: a new one in `REWARDS` is checked by all of this without another line.
+"""Conformance of all rewards in `REWARDS`.
 
-What users' rewards must do too is in `kswarms.agents.conformance`. Here are the checks of the package's own.
-check is a function of a reward's class, and has a reward that it must turn down.
+Checks of user-defined rewards too are in `kswarms.agents.conformance`. The others are for the rewards of the
+package. Each check takes a class, and has a reward that fails it.
 """
 
 import math
@@ -26,7 +26,7 @@ def check_it_is_built_from_its_name(reward: type[Reward]) -> None:
     assert built == reward()
 
 
-def check_repr_tells_its_name_and_arguments(reward: type[Reward]) -> None:
+def check_repr_shows_name_and_arguments(reward: type[Reward]) -> None:
     text = repr(reward())
     assert text.startswith(f"{reward.__name__}(")
     assert all(f"{field}=" in text for field in reward.model_fields)
@@ -42,7 +42,7 @@ def check_numbers_are_checked(reward: type[Reward]) -> None:
                 assert caught.value.field == field
 
 
-def check_program_time_does_no_harm(reward: type[Reward]) -> None:
+def check_program_time_increases_the_reward(reward: type[Reward]) -> None:
     for t_a, t_p, *rest in cases():
         assert reward().of(t_a, t_p + 1.0, *rest) >= reward().of(t_a, t_p, *rest)
     more = [
@@ -53,12 +53,12 @@ def check_program_time_does_no_harm(reward: type[Reward]) -> None:
 
 
 def check_it_is_in_seconds(reward: type[Reward]) -> None:
-    """Q is a reward for each second, so twice the times are worth twice as much (Eqs. 4.15, 5.4)."""
+    """Q is a reward per second, so twice the times give twice the reward (Eqs. 4.15, 5.4)."""
     for t_a, t_p, *rest in cases():
         assert reward().of(2 * t_a, 2 * t_p, *rest) == pytest.approx(2 * reward().of(t_a, t_p, *rest))
 
 
-def check_sensors_count_in_eighths(reward: type[Reward]) -> None:
+def check_rewards_are_linear_in_active_sensors(reward: type[Reward]) -> None:
     """R is linear in n' (Eqs. 5.4, 6.3)."""
     for t_a, t_p, n_active, *rest in cases():
         none, all_of_them = (reward().of(t_a, t_p, n, *rest) for n in (0, 8))
@@ -76,14 +76,14 @@ class Unbuildable(Reward):
 
 
 class Mute(WLU):
-    """Tells nothing of itself."""
+    """Has no informative repr."""
 
     def __repr__(self) -> str:
         return "<reward>"
 
 
 class Moody(IndividualUtility):
-    """No two are alike."""
+    """Instances are never equal."""
 
     def __init__(self, **values: Any) -> None:
         super().__init__(**values)
@@ -96,33 +96,33 @@ class Moody(IndividualUtility):
 
 
 class Thawed(IndividualUtility):
-    """Can be changed."""
+    """Is not frozen."""
 
     model_config = {"frozen": False}
 
 
 class Lenient(WLU):
-    """Takes any argument."""
+    """Accepts any argument."""
 
     model_config = {"extra": "ignore"}
 
 
 class Unchecked(WLU):
-    """Takes any number."""
+    """Accepts NaN and infinities."""
 
     model_config = {"allow_inf_nan": True}
     bonus: float = 0.0
 
 
 class Whole(WLU):
-    """Gives a number that is none."""
+    """Returns NaN."""
 
     def of(self, *conflict: Any) -> float:
         return 1 if conflict[1] else math.nan
 
 
 class Tired(WLU):
-    """Gives less each time."""
+    """Returns less each time."""
 
     given: list[float] = Field(default_factory=list)
 
@@ -132,7 +132,7 @@ class Tired(WLU):
 
 
 class Hurried(WLU):
-    """Would rather have no program time."""
+    """Decreases with program time."""
 
     def of(self, t_a: float, t_p: float, *rest: Any) -> float:
         return super().of(t_a, -t_p, *rest)
@@ -146,7 +146,7 @@ class Flat(WLU):
 
 
 class Steep(WLU):
-    """Goes by the square of n'."""
+    """Is quadratic in n'."""
 
     def of(self, t_a: float, t_p: float, n_active: int, *rest: Any) -> float:
         return super().of(t_a, t_p, n_active * n_active, *rest)
@@ -155,14 +155,14 @@ class Steep(WLU):
 Check = Callable[[Any], None]
 CHECKS: Final[dict[Check, type[Reward]]] = {
     check_it_is_built_from_its_name: Unbuildable,
-    check_repr_tells_its_name_and_arguments: Mute,
+    check_repr_shows_name_and_arguments: Mute,
     check_numbers_are_checked: Unchecked,
     **dict(zip(REWARD_CHECKS, (Moody, Thawed, Lenient, Whole, Tired), strict=True)),
-    check_program_time_does_no_harm: Hurried,
+    check_program_time_increases_the_reward: Hurried,
     check_it_is_in_seconds: Flat,
-    check_sensors_count_in_eighths: Steep,
+    check_rewards_are_linear_in_active_sensors: Steep,
 }
-"""Every check, with a reward that must not pass it."""
+"""Each check with a reward that fails it."""
 
 
 @pytest.mark.parametrize("name", REWARDS)
@@ -172,15 +172,15 @@ def test_every_reward_passes_every_check(name: str, check: Check) -> None:
 
 
 @pytest.mark.parametrize("check", CHECKS)
-def test_every_check_turns_a_bad_reward_down(check: Check) -> None:
+def test_every_check_refuses_a_bad_reward(check: Check) -> None:
     try:
         check(CHECKS[check])
     except (AssertionError, InputError, pytest.fail.Exception):
         return
-    pytest.fail(f"{check.__name__} let {CHECKS[check].__name__} pass")
+    pytest.fail(f"{check.__name__} accepted {CHECKS[check].__name__}")
 
 
-def test_names_are_as_users_write_them() -> None:
+def test_names_can_be_written_in_texts() -> None:
     for name in REWARDS:
         assert name == name.lower().strip()
         assert not set(name) & set("()+,'\" ")

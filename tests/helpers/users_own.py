@@ -1,4 +1,4 @@
-"""A file as a user writes it: policies, rewards and rules, good ones and each with its own mistake."""
+"""User-defined policies, rewards and rules: valid ones and faulty ones."""
 
 import math
 
@@ -91,7 +91,7 @@ class Library(Cautious):
 
 
 class Tally(Frozen):
-    """Counts what it did, and shows it."""
+    """Counts its actions and has a snapshot."""
 
     def __init__(self, setting):
         super().__init__(setting)

@@ -1,4 +1,4 @@
-"""Code of a user's own that passes its trial and goes wrong in a game, or while games are played."""
+"""User-defined code that passes its trial and fails during games."""
 
 import gc
 import weakref
@@ -65,12 +65,12 @@ RUN = ["run", "mine.toml", "--jobs", "1", "--quiet", "--no-figures"]
 
 
 @pytest.fixture(autouse=True)
-def _in_a_directory_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def _change_to_a_temporary_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
 def errors_of(code: str, policy: str = "faulty.py:Faulty") -> list[str]:
-    """Play a scenario with faulty code, and return how its runs failed."""
+    """Play a scenario with faulty code and return the errors of its runs."""
     Path("faulty.py").write_text(code)
     Path("mine.toml").write_text(SCENARIO.replace("POLICY", policy))
     assert invoke(RUN) == 1
@@ -83,35 +83,35 @@ def errors_of(code: str, policy: str = "faulty.py:Faulty") -> list[str]:
     [
         ("return None", "must return an action of the game, not None"),
         ("return 'fight'", "must return an action of the game, not 'fight'"),
-        # Its name is that of an action of the game, it is another: it would be played unnoticed.
+        # Another action with the name of an action of the game.
         ("return Action(name='fight', direction=-1, duration=30)", "must return an action of the game, not "),
         ("raise StopSimulation(None)", "RuntimeError: the clock was stopped at "),
         ("sys.exit(0)", "SystemExit: 0"),
         ("return self.choose(opponent)", "RecursionError: "),
     ],
 )
-def test_a_policy_that_goes_wrong_in_the_game_fails_its_runs(fault: str, error: str) -> None:
+def test_a_policy_that_fails_in_the_game_fails_its_runs(fault: str, error: str) -> None:
     failed = errors_of(POLICY.replace("FAULT", fault))
     assert len(failed) == 2
     assert all(error in line for line in failed)
 
 
 @pytest.mark.parametrize("fault", ["os.remove(__file__)", "Path(__file__).write_text('# another')"])
-def test_a_file_that_goes_or_changes_meanwhile_fails_the_rest_and_keeps_what_was_played(fault: str) -> None:
+def test_a_removed_or_changed_file_fails_the_remaining_runs(fault: str) -> None:
     (error,) = errors_of(POLICY.replace("FAULT", f"self.asked == 9 and os.path.exists(__file__) and {fault}"))
     assert "policy='faulty.py': must not change while its games are played" in error
     assert Path("results", "runs.parquet").exists()
 
 
 @pytest.mark.parametrize("value", ["float('nan')", "float('inf')"])
-def test_a_reward_that_is_no_number_fails_the_run_before_it_is_learned_from(value: str) -> None:
+def test_a_reward_that_is_not_finite_fails_the_run(value: str) -> None:
     failed = errors_of(REWARD.replace("FAULT", value), "inter-learner(reward='faulty.py:Faulty')")
     assert len(failed) == 2
     assert all("reward=" in line and "must be finite, also for T(a)=" in line for line in failed)
 
 
 @pytest.mark.parametrize("arm", ["-1", "2"])
-def test_a_rule_that_chooses_what_is_no_arm_fails_the_run(arm: str) -> None:
+def test_a_rule_that_returns_no_arm_fails_the_run(arm: str) -> None:
     failed = errors_of(RULE.replace("FAULT", arm), "inter-learner(rule='faulty.py:Faulty')")
     assert failed == [f"InputError: rule={arm}: must choose 0 to 1"] * 2
 
@@ -125,7 +125,7 @@ def test_a_rule_that_changes_the_bandit_is_refused(capsys: pytest.CaptureFixture
 
 
 @pytest.mark.parametrize(("opponent", "action"), [(3, "fight"), (0, "fight"), (1, "dance")])
-def test_what_a_policy_says_that_it_learned_must_be_of_the_game(opponent: int, action: str) -> None:
+def test_a_snapshot_must_fit_the_game(opponent: int, action: str) -> None:
     arm = {"opponent": opponent, "action": action, "reward": 1.0, "time": 1.0, "count": 1.0, "q": 1.0}
     told = f"    def snapshot(self):\n        return [{arm}]\n"
     Path("faulty.py").write_text(POLICY.replace("FAULT", "pass") + "\n" + told)
@@ -133,7 +133,7 @@ def test_what_a_policy_says_that_it_learned_must_be_of_the_game(opponent: int, a
         ForagingModel(n=4, policies="avoid,faulty.py:Faulty")
 
 
-def test_a_stopped_clock_is_told_by_a_step_too() -> None:
+def test_a_step_reports_a_stopped_clock() -> None:
     Path("faulty.py").write_text(POLICY.replace("FAULT", "raise StopSimulation(None)"))
     model = ForagingModel(n=12, policies="avoid,faulty.py:Faulty", duration=60)
     with pytest.raises(RuntimeError, match=r"the clock was stopped at \d+"):  # noqa: PT012  # in which, none can tell
@@ -141,7 +141,7 @@ def test_a_stopped_clock_is_told_by_a_step_too() -> None:
             model.step()
 
 
-def test_a_game_that_is_over_is_not_kept_alive() -> None:
+def test_a_finished_game_can_be_freed() -> None:
     model = ForagingModel(n=4, duration=10)
     model.play()
     alive = weakref.ref(model)
@@ -151,7 +151,7 @@ def test_a_game_that_is_over_is_not_kept_alive() -> None:
 
 
 @pytest.mark.parametrize("swarm", [0, 3, -1])
-def test_policies_are_saved_of_a_swarm_of_the_game_alone(swarm: int) -> None:
+def test_policies_are_saved_only_for_swarms_of_the_game(swarm: int) -> None:
     model: GameModel = ForagingModel(n=4, policies="learner,learner", learning=10, duration=10)
     with pytest.raises(InputError, match=f"swarm={swarm}: must be in 1 to 2"):
         save_policies(model, swarm, Path("learned.json"))

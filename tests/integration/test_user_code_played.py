@@ -1,4 +1,4 @@
-"""Code in a user's own file works wherever a policy is named: command line, workers, `mesa.batch_run`."""
+"""User-defined code plays from the command line, in workers and in `mesa.batch_run`."""
 
 import json
 import os
@@ -34,8 +34,8 @@ if __name__ == "__main__":
 
 
 @pytest.fixture(autouse=True)
-def _in_a_users_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Go where a user has code and the package is not; workers find the package all the same."""
+def _change_to_a_directory_with_user_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Change to a directory with user code; workers still find the package."""
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(path or str(Path.cwd()) for path in sys.path))
     monkeypatch.chdir(tmp_path)
     Path("code").mkdir()
@@ -54,7 +54,7 @@ def _in_a_users_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
 
 
 @pytest.mark.slow
-def test_the_command_line_plays_it_in_worker_processes_as_in_its_own() -> None:
+def test_worker_processes_give_the_same_results() -> None:
     tables = []
     for jobs in ("1", "2"):
         assert invoke(["run", "mine.toml", "--jobs", jobs, "--out", jobs, "--no-figures"]) == 0
@@ -64,7 +64,7 @@ def test_the_command_line_plays_it_in_worker_processes_as_in_its_own() -> None:
     assert set(pq.read_table(Path("2", "policies.parquet"))["condition"].to_pylist()) == {"2"}
 
 
-def test_a_mistake_in_it_is_one_line_and_nothing_is_written(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_error_in_user_code_is_one_line_and_nothing_is_written(capsys: pytest.CaptureFixture[str]) -> None:
     code = Path("cautious.py").read_text()
     Path("cautious.py").write_text(code.replace("return self.flight", "return self.flee", 1))
     assert invoke(["run", "mine.toml", "--out", "results"]) == 2
@@ -75,7 +75,7 @@ def test_a_mistake_in_it_is_one_line_and_nothing_is_written(capsys: pytest.Captu
 
 
 @pytest.mark.slow
-def test_batch_run_sweeps_it_in_two_processes_as_in_one() -> None:
+def test_batch_run_with_two_processes_gives_the_same_results() -> None:
     sweep = {"policies": [f"avoid,{text}" for text in TEXTS], "n": 8, "seed": [0, 1], "duration": 40.0}
     here = mesa.batch_run(
         ForagingModel, sweep, number_processes=1, data_collection_period=-1, display_progress=False

@@ -1,4 +1,4 @@
-"""Streams are named by seed, robot and purpose, and by nothing else."""
+"""Random streams are identified by seed, robot and purpose."""
 
 import itertools
 
@@ -12,22 +12,22 @@ def first_draws(seed: int, robot: int, purpose: Purpose) -> tuple[float, ...]:
     return tuple(stream(seed, robot, purpose).random(4))
 
 
-def test_a_name_gives_the_same_draws_again() -> None:
+def test_a_stream_gives_the_same_draws_again() -> None:
     assert first_draws(5, 3, Purpose.LEG) == first_draws(5, 3, Purpose.LEG)
 
 
-def test_every_other_name_gives_other_draws() -> None:
+def test_different_streams_give_different_draws() -> None:
     names = list(itertools.product((0, 1, 2**40), (0, 1, ENVIRONMENT), Purpose))
     assert len({first_draws(*name) for name in names}) == len(names)
 
 
-def test_drawing_from_one_stream_leaves_the_others_alone() -> None:
+def test_drawing_from_one_stream_does_not_change_others() -> None:
     first, second = stream(0, 0, Purpose.LEG), stream(0, 1, Purpose.LEG)
     first.random(1000)
     assert tuple(second.random(4)) == first_draws(0, 1, Purpose.LEG)
 
 
-def test_streams_of_neighbouring_names_are_not_correlated() -> None:
+def test_neighbouring_streams_are_not_correlated() -> None:
     draws = np.array([stream(0, robot, Purpose.WANDER).random(2000) for robot in range(20)])
     correlations = np.corrcoef(draws)[np.triu_indices(20, 1)]
     assert np.abs(correlations).max() < 4.5 / np.sqrt(2000)

@@ -1,4 +1,4 @@
-"""Files are there whole or not at all."""
+"""Atomic file writing."""
 
 import os
 from pathlib import Path
@@ -8,7 +8,7 @@ import pytest
 from kswarms.agents.common.atomic_files import atomic_path, remove_temporary_files
 
 
-def test_a_file_takes_the_place_of_another_once_it_is_whole(tmp_path: Path) -> None:
+def test_a_file_is_replaced_on_success(tmp_path: Path) -> None:
     path = tmp_path / "film.gif"
     path.write_text("before")
     with atomic_path(path) as file:
@@ -19,7 +19,7 @@ def test_a_file_takes_the_place_of_another_once_it_is_whole(tmp_path: Path) -> N
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_what_is_not_finished_leaves_all_as_it_was(tmp_path: Path) -> None:
+def test_a_failed_write_changes_nothing(tmp_path: Path) -> None:
     path = tmp_path / "film.gif"
     path.write_text("before")
 
@@ -34,8 +34,8 @@ def test_what_is_not_finished_leaves_all_as_it_was(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_what_killed_processes_left_is_removed_and_nothing_else(tmp_path: Path) -> None:
-    left = [f".unfinished-{process}-film.gif" for process in (99_999_999, 10**30)]  # which no process has
+def test_only_temporary_files_of_killed_processes_are_removed(tmp_path: Path) -> None:
+    left = [f".unfinished-{process}-film.gif" for process in (99_999_999, 10**30)]    # no process IDs
     living = [f".unfinished-{process}-film.gif" for process in (1, os.getpid())]
     of_others = [*living, ".unfinished-tables-1", "1-film.gif"]
     for name in (*left, *of_others):
@@ -44,7 +44,7 @@ def test_what_killed_processes_left_is_removed_and_nothing_else(tmp_path: Path) 
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(of_others)
 
 
-def test_what_a_process_of_another_user_writes_is_left_alone(
+def test_temporary_files_of_other_users_processes_stay(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(_process: int, _signal: int) -> None:

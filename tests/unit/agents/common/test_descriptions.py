@@ -1,4 +1,4 @@
-"""Actions, bodies and the rule of bad input: one line that names the field, the value and what is allowed."""
+"""Actions, bodies and errors of invalid input: one line with field, value and rule."""
 
 import math
 import pickle
@@ -14,7 +14,7 @@ from kswarms.agents.robot.controller import Controller
 
 
 class Nested(Checked):
-    """A description with another one in it."""
+    """A nested description."""
 
     action: Action
     weights: tuple[float, ...] = ()
@@ -73,7 +73,7 @@ def test_descriptions_are_values() -> None:
     assert pickle.loads(pickle.dumps(flight)) == flight
 
 
-def test_the_error_crosses_processes_whole() -> None:
+def test_errors_can_be_pickled() -> None:
     error: InputError = pickle.loads(pickle.dumps(InputError("n", -3, "must be ≥ 1")))
     assert type(error) is InputError
     assert (error.field, error.value, error.allowed) == ("n", -3, "must be ≥ 1")
@@ -90,11 +90,11 @@ def test_the_two_scales_of_the_krembot() -> None:
     assert (KREMBOT.radius, KREMBOT.sensor_range, KREMBOT.top_speed) == (0.0325, 0.2551, 0.25)
     assert KREMBOT_SIM.sensing_scale == 1.0
     assert KREMBOT.sensing_scale == pytest.approx(0.0325 / 0.085)
-    # The public range in the small scale is the large one's, shrunk like every sensing distance.
+    # The range in the small scale is that of the large scale, reduced like every sensing distance.
     assert KREMBOT.sensor_range == pytest.approx(KREMBOT.sensing_scale * KREMBOT_SIM.sensor_range, rel=1e-3)
 
 
-def test_bodies_go_by_their_names() -> None:
+def test_bodies_are_found_by_name() -> None:
     assert {name: body.name for name, body in BODIES.items()} == {name: name for name in BODIES}
     assert (BODIES["krembot-sim"], BODIES["krembot"]) == (KREMBOT_SIM, KREMBOT)
 

@@ -1,4 +1,4 @@
-"""The bandit: sums, values and what is best, against sequences worked by hand (Eq. 4.15)."""
+"""Sums, values and the best arm of a bandit, compared with sequences computed by hand (Eq. 4.15)."""
 
 import copy
 import math
@@ -17,14 +17,14 @@ def test_value_is_the_sum_of_rewards_over_the_sum_of_times() -> None:
     bandit = Bandit(2)
     for arm, reward, time in ((0, 3.0, 4.0), (1, 1.0, 8.0), (0, 0.0, 2.0), (0, -1.5, 2.0)):
         bandit.update(arm, reward, time)
-    # Arm 0: (3 + 0 - 1.5) / (4 + 2 + 2) = 1.5 / 8, not the mean of the quotients, 0.
+    # Arm 0: (3 + 0 - 1.5) / (4 + 2 + 2) = 1.5 / 8; the mean of the quotients is 0.
     assert bandit.value(0) == 0.1875
     assert bandit.value(1) == 0.125
     assert (bandit.reward, bandit.time, bandit.count) == ([1.5, 1.0], [8.0, 8.0], [3.0, 1.0])
 
 
 @given(LIST)
-def test_sums_are_those_of_the_whole_history(history: list[tuple[int, float, float]]) -> None:
+def test_sums_cover_the_whole_history(history: list[tuple[int, float, float]]) -> None:
     bandit = Bandit(3)
     for arm, reward, time in history:
         bandit.update(arm, reward, time)
@@ -35,18 +35,18 @@ def test_sums_are_those_of_the_whole_history(history: list[tuple[int, float, flo
         assert bandit.time[arm] == pytest.approx(math.fsum(time for _, time in own))
 
 
-def test_discounting_is_of_all_that_was_before_and_of_every_arm() -> None:
+def test_discounting_applies_to_all_earlier_conflicts_of_every_arm() -> None:
     bandit = Bandit(2)
     bandit.update(0, 4.0, 8.0, discount=0.5)
     bandit.update(1, 6.0, 4.0, discount=0.5)
     bandit.update(1, 1.0, 2.0, discount=0.5)
     # Arm 0 was discounted twice: 4/4, 8/4, 1/4. Arm 1: 6/2 + 1, 4/2 + 2, 1/2 + 1.
     assert (bandit.reward, bandit.time, bandit.count) == ([1.0, 4.0], [2.0, 4.0], [0.25, 1.5])
-    # One arm's own value does not change while the other one is taken.
+    # The value of an arm does not change while the other arm is chosen.
     assert bandit.value(0) == 0.5
 
 
-def test_an_arm_that_was_never_tried_has_no_value_and_is_not_the_best() -> None:
+def test_an_untried_arm_has_no_value_and_is_not_the_best() -> None:
     bandit = Bandit(3)
     assert bandit.best() is None
     assert math.isnan(bandit.value(1))
@@ -57,7 +57,7 @@ def test_an_arm_that_was_never_tried_has_no_value_and_is_not_the_best() -> None:
 
 
 @pytest.mark.parametrize("arm", range(3))
-def test_the_best_is_that_of_the_greatest_value_not_reward_or_count(arm: int) -> None:
+def test_the_best_arm_has_the_greatest_value_not_reward_or_count(arm: int) -> None:
     bandit = Bandit(3)
     for other in range(3):
         if other != arm:
@@ -67,14 +67,14 @@ def test_the_best_is_that_of_the_greatest_value_not_reward_or_count(arm: int) ->
     assert bandit.best() == arm
 
 
-def test_the_first_of_equals_is_the_best() -> None:
+def test_the_first_of_equal_arms_is_the_best() -> None:
     bandit = Bandit(2)
     bandit.update(1, 1.0, 2.0)
     bandit.update(0, 2.0, 4.0)
     assert bandit.best() == 0
 
 
-def test_it_survives_copies_and_shows_what_it_knows() -> None:
+def test_copies_are_equal_and_repr_shows_the_sums() -> None:
     bandit = Bandit(2)
     bandit.update(1, 1.5, 3.0)
     bandit.choices = 2

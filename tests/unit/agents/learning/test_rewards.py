@@ -1,4 +1,4 @@
-"""The rewards against values worked by hand (Eqs. 5.4, 5.5, 6.2, 6.3, 7.1, 7.2, section 6.3.5)."""
+"""Rewards compared with values computed by hand (Eqs. 5.4, 5.5, 6.2, 6.3, 7.1, 7.2, section 6.3.5)."""
 
 import pytest
 from hypothesis import given
@@ -53,12 +53,12 @@ def test_wlu_counts_the_active_sensors_of_eight(n_active: int, expected: float) 
 def test_wlu_of_the_disadvantaged_is_eleven_twelfths_of_the_program() -> None:
     reward = WLU(delta=0.145, b=7 / 6)
     assert of(reward, t_a=0.0, t_p=12.0) == pytest.approx(11.0, abs=1e-12)
-    # 11/12 · 6 − 8/8 · 0.145 · 2; the action's part knows no b.
+    # 11/12 · 6 − 8/8 · 0.145 · 2; the term of the action has no b.
     assert of(reward, t_a=2.0, t_p=6.0, direction=AWAY) == pytest.approx(5.21, abs=1e-12)
 
 
 @given(st.floats(0.1, 2.9), st.integers(1, 40), SECONDS)
-def test_wlu_is_the_exact_one_where_both_kinds_are_met_as_often(b: float, each: int, t_p: float) -> None:
+def test_the_estimated_wlu_is_exact_for_equal_numbers_met(b: float, each: int, t_p: float) -> None:
     exact = (each + (2 - b) * each) / (2 * each) * t_p  # Eq. 7.1 with n_k = n_m
     assert of(WLU(b=b), t_a=0.0, t_p=t_p) == pytest.approx(exact, abs=1e-9)
 
@@ -87,7 +87,7 @@ def test_a_number_for_delta_or_b_holds_for_all_opponents() -> None:
 
 
 @pytest.mark.parametrize(("inter", "direction"), CASES)
-def test_individual_utility_knows_no_sign(inter: bool, direction: int) -> None:
+def test_individual_utility_does_not_depend_on_the_sign(inter: bool, direction: int) -> None:
     # 2/8 · 6 − 2/8 · 0.125 · 4
     assert of(IndividualUtility(), 4.0, 6.0, 2, direction, inter) == 1.375
     assert of(IndividualUtility(delta=0.5), 4.0, 6.0, 2, direction, inter) == 1.0

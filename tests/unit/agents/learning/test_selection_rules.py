@@ -1,4 +1,4 @@
-"""Each selection rule against values worked by hand, and against its definition over the whole history."""
+"""Selection rules compared with values computed by hand and with their definitions over whole histories."""
 
 import math
 from collections import Counter
@@ -25,11 +25,11 @@ from kswarms.agents.streams import Purpose, stream
 
 FIRST_UNTRIED = [UCB(), DiscountedUCB(), Greedy(), PeriodicRandom()]
 SURE = 1e-4
-"""How unlikely draws that are as they should be may look."""
+"""Significance level of the statistical tests."""
 
 
 class Draws:
-    """A stand-in for a stream that counts what is drawn of it."""
+    """A stream that counts its draws."""
 
     def __init__(self, value: float = 0.0) -> None:
         self.value = value
@@ -41,7 +41,7 @@ class Draws:
 
 
 def bandit(*arms: tuple[float, float], time: float = 10.0) -> Bandit:
-    """Build a bandit from Q and N of each arm."""
+    """Return a bandit with these Q and N of each arm."""
     known = Bandit(len(arms))
     known.reward = [q * time * n for q, n in arms]
     known.time = [time * n for _, n in arms]
@@ -54,11 +54,11 @@ def chosen(rule: Rule, known: Bandit, draws: Draws | None = None) -> int:
 
 
 def as_equals(rule: Rule, known: Bandit) -> set[int]:
-    """Return the arms between which a rule draws."""
+    """Return the arms that a rule considers equal."""
     return {chosen(rule, known, Draws(k / 100)) for k in range(100)}
 
 
-def test_ucb_worked_by_hand() -> None:
+def test_ucb_equals_values_computed_by_hand() -> None:
     # N = 3 + 1, ln 4 = 1.38629, γ ln N = 0.155 · 1.38629 = 0.214876.
     # Bonuses: sqrt(0.214876 / 3) = 0.267629, sqrt(0.214876 / 1) = 0.463547, difference 0.195918.
     rule = UCB(gamma=0.155)
@@ -66,11 +66,11 @@ def test_ucb_worked_by_hand() -> None:
     assert chosen(rule, bandit((0.5, 3), (0.3042, 1))) == 1  # 0.767629 < 0.767747
 
 
-def test_gamma_is_the_fitted_one_unless_given() -> None:
+def test_the_default_gamma_is_the_fitted_value() -> None:
     assert UCB() == UCB(gamma=0.1211)
 
 
-def test_ucb_worked_by_hand_with_three_arms() -> None:
+def test_ucb_with_three_arms_equals_values_computed_by_hand() -> None:
     # N = 1 + 2 + 5 = 8, γ ln N = 1 · 2.079442. Bonuses 1.442027, 1.019667, 0.644894.
     assert chosen(UCB(gamma=1), bandit((0.0, 1), (0.42, 2), (0.797, 5))) == 0  # 1.4420 1.4397 1.4419
     assert chosen(UCB(gamma=1), bandit((0.0, 1), (0.43, 2), (0.797, 5))) == 1  # 1.4420 1.4497 1.4419
@@ -81,7 +81,7 @@ ARMS = st.lists(st.tuples(st.floats(-1, 1), st.integers(1, 500)), min_size=2, ma
 
 
 @given(ARMS, st.floats(0, 2))
-def test_ucb_takes_the_greatest_bound(arms: list[tuple[float, int]], gamma: float) -> None:
+def test_ucb_chooses_the_greatest_bound(arms: list[tuple[float, int]], gamma: float) -> None:
     n = sum(count for _, count in arms)
     bounds = [q + math.sqrt(gamma * math.log(n) / count) for q, count in arms]
     arm = chosen(UCB(gamma=gamma), bandit(*arms))
@@ -89,7 +89,7 @@ def test_ucb_takes_the_greatest_bound(arms: list[tuple[float, int]], gamma: floa
 
 
 @given(ARMS)
-def test_greedy_takes_the_greatest_value_and_so_does_ucb_that_does_not_explore(
+def test_greedy_and_ucb_without_exploration_choose_the_greatest_value(
     arms: list[tuple[float, int]],
 ) -> None:
     known = bandit(*arms)
@@ -97,7 +97,7 @@ def test_greedy_takes_the_greatest_value_and_so_does_ucb_that_does_not_explore(
         assert known.value(chosen(rule, known)) == max(known.value(arm) for arm in range(len(arms)))
 
 
-def test_ties_are_broken_by_a_draw_and_only_ties() -> None:
+def test_only_ties_are_broken_by_a_draw() -> None:
     draws = Draws()
     for rule in (UCB(), DiscountedUCB(), Greedy(), PeriodicRandom()):
         assert as_equals(rule, bandit((0.5, 4), (0.25, 4), (0.5, 4))) == {0, 2}
@@ -106,7 +106,7 @@ def test_ties_are_broken_by_a_draw_and_only_ties() -> None:
 
 
 @pytest.mark.parametrize("rule", FIRST_UNTRIED, ids=repr)
-def test_arms_never_tried_come_first_however_good_the_others_are(rule: Rule) -> None:
+def test_untried_arms_come_first(rule: Rule) -> None:
     known = bandit((1.0, 1000), (0.0, 0), (-1.0, 1000), (0.0, 0))
     assert as_equals(rule, known) == {1, 3}
     known.update(3, -5.0, 1.0)
@@ -116,7 +116,7 @@ def test_arms_never_tried_come_first_however_good_the_others_are(rule: Rule) -> 
 
 
 @pytest.mark.parametrize("rule", FIRST_UNTRIED, ids=repr)
-def test_the_order_of_arms_never_tried_is_random(rule: Rule) -> None:
+def test_the_order_of_untried_arms_is_random(rule: Rule) -> None:
     orders: Counter[tuple[int, ...]] = Counter()
     for seed in range(600):
         known, draws, order = Bandit(3), stream(seed, 0, Purpose.EXPLORE), []
@@ -130,7 +130,7 @@ def test_the_order_of_arms_never_tried_is_random(rule: Rule) -> None:
 
 
 @pytest.mark.parametrize("every", [5, 20, 1, 7])
-def test_periodic_random_draws_one_choice_in_so_many(every: int) -> None:
+def test_periodic_random_draws_every_nth_choice(every: int) -> None:
     rule, draws, known = PeriodicRandom(every=every), Draws(), Bandit(2)
     drawn_at = []
     for choice in range(1, 101):
@@ -145,7 +145,7 @@ def test_periodic_random_draws_one_choice_in_so_many(every: int) -> None:
     assert drawn_at == [choice for choice in range(3, 101) if choice % every == 0]
 
 
-def test_periodic_random_draws_every_arm_alike() -> None:
+def test_periodic_random_draws_arms_uniformly() -> None:
     known, draws = bandit((0.1, 9), (0.9, 9), (0.2, 9)), stream(1, 2, Purpose.EXPLORE)
     known.choices = 4
     counts = Counter(PeriodicRandom().choose(known, draws) for _ in range(3000))
@@ -159,13 +159,13 @@ def test_periodic_random_draws_every_arm_alike() -> None:
     [Bandit(4), bandit((1.0, 500), (-1.0, 1), (0.0, 1), (0.0, 1)), bandit((1.0, 5), *3 * [(0.0, 0)])],
     ids=["nothing known", "one far better", "one tried"],
 )
-def test_uniform_random_takes_every_arm_alike_whatever_is_known(known: Bandit) -> None:
+def test_uniform_random_draws_arms_uniformly(known: Bandit) -> None:
     draws = stream(7, 3, Purpose.EXPLORE)
     counts = Counter(UniformRandom().choose(known, draws) for _ in range(4000))
     assert chisquare([counts[arm] for arm in range(4)]).pvalue > SURE
 
 
-def test_uniform_random_does_not_remember_its_choices() -> None:
+def test_uniform_random_choices_are_independent() -> None:
     draws, known = stream(7, 3, Purpose.EXPLORE), Bandit(2)
     arms = [UniformRandom().choose(known, draws) for _ in range(4001)]
     pairs = Counter(pairwise(arms))
@@ -179,7 +179,7 @@ def test_the_test_of_uniformity_can_fail() -> None:
 
 
 @pytest.mark.parametrize(("discount", "gamma"), [(0.99, 0.155), (0.9, 0.6), (0.5, 2.0), (1.0, 0.155)])
-def test_discounted_ucb_is_the_definition_over_the_whole_history(discount: float, gamma: float) -> None:
+def test_discounted_ucb_equals_its_definition_over_the_whole_history(discount: float, gamma: float) -> None:
     """Garivier & Moulines: N_λ(a) = Σ_s λ^(t−s) 1{a_s = a}, and ΣR, ΣT likewise, at each of 400 conflicts."""
     rule, known, world = DiscountedUCB(discount=discount, gamma=gamma), Bandit(3), np.random.default_rng(11)
     assert rule.factor == discount
@@ -199,7 +199,7 @@ def test_discounted_ucb_is_the_definition_over_the_whole_history(discount: float
             bounds = reward / time + np.sqrt(gamma * np.log(count.sum()) / count)
             assert bounds[arm] >= bounds.max() - 1e-9
         times.append(world.uniform(1.0, 20.0))
-        # What is best drifts from one arm to the next, as discounting is meant for.
+        # The best arm changes over time, the case that discounting is for.
         rewards.append(times[-1] * (0.5 + 0.3 * math.cos(t / 60 + 2 * arm) + world.normal(0.0, 0.05)))
         arms.append(arm)
         known.choices += 1
@@ -207,13 +207,13 @@ def test_discounted_ucb_is_the_definition_over_the_whole_history(discount: float
     assert min(Counter(arms).values()) > 5
 
 
-def test_discounting_defaults_and_what_it_is_of() -> None:
+def test_defaults_of_discounted_ucb() -> None:
     assert DiscountedUCB() == DiscountedUCB(gamma=0.1211, discount=0.99)
     assert {name for name, rule in RULES.items() if rule().factor != 1.0} == {"discounted-ucb"}
 
 
 @pytest.mark.parametrize(("discount", "gamma"), [(0.5, 0.0), (0.9, 0.0), (1e-3, 0.155)])
-def test_discounted_ucb_goes_on_when_an_arm_is_all_but_forgotten(discount: float, gamma: float) -> None:
+def test_discounted_ucb_retries_an_arm_with_a_tiny_count(discount: float, gamma: float) -> None:
     rule, known = DiscountedUCB(discount=discount, gamma=gamma), Bandit(2)
     for _ in range(8000):  # discounted so often, the weight of an arm falls below the smallest number
         arm = chosen(rule, known)

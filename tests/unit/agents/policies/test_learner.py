@@ -1,4 +1,4 @@
-"""The learner, one conflict at a time: which bandit learns what, what is taken afterwards (Algorithm 1)."""
+"""The learner, conflict by conflict: which bandit learns, and the choices afterwards (Algorithm 1)."""
 
 import copy
 import math
@@ -37,7 +37,7 @@ def learner(text: str = "learner", **where: int) -> Learner:
 
 
 def teach(policy: Learner, opponent: int, rewards: dict[str, float], rounds: int = 40) -> None:
-    """Have conflicts in which each action brings its own program time."""
+    """Play conflicts in which the program time depends on the action."""
     for _ in range(rounds):
         action = policy.choose(opponent)
         policy.learn(1.0, rewards[action.name], 0)
@@ -62,7 +62,7 @@ def test_there_is_a_bandit_for_each_swarm_learned_about(text: str, about: set[in
     assert all(bandit.choices == 0 for bandit in policy.bandits.values())
 
 
-def test_the_fixed_action_against_the_others_can_be_chosen() -> None:
+def test_the_fixed_action_against_other_swarms_is_an_argument() -> None:
     policy = learner("intra-learner(otherwise='fight')")
     assert {policy.choose(0) for _ in range(20)} == {FIGHT}
     assert make_policy("inter-learner", setting(actions=(FIGHT, FLIGHT))).choose(1) == FLIGHT
@@ -86,7 +86,7 @@ def test_a_conflict_rewards_the_arm_that_was_chosen_for_it() -> None:
     assert (reward, value) == pytest.approx((0.0, (6 + 0.2 * sign[first]) / 10))
 
 
-def test_within_the_swarm_the_sign_of_the_reward_turns() -> None:
+def test_the_sign_of_the_reward_is_reversed_within_the_swarm() -> None:
     policy = learner("learner(reward='wlu(delta=0.5)')")
     rewards = {}
     for opponent in (0, 1):
@@ -96,7 +96,7 @@ def test_within_the_swarm_the_sign_of_the_reward_turns() -> None:
     assert rewards == {(0, "fight"): 1.0, (0, "flight"): -1.0, (1, "fight"): -1.0, (1, "flight"): 1.0}
 
 
-def test_the_reward_is_told_the_opponent_counted_from_one() -> None:
+def test_rewards_count_opponents_from_one() -> None:
     policy = learner("inter-learner(reward='wlu(delta={1: 0.02, 3: 0.5}, b={3: 2.0})')", swarms=3)
     got = {}
     for opponent in (0, 2):
@@ -109,8 +109,8 @@ def test_the_reward_is_told_the_opponent_counted_from_one() -> None:
     assert got[2, FLIGHT] == pytest.approx(4.5)
 
 
-def test_what_is_known_of_one_swarm_does_not_count_for_another() -> None:
-    """N of Eq. 4.16 is that of one bandit: with the other's 900 conflicts, ln N would explore more."""
+def test_bandits_of_different_swarms_are_independent() -> None:
+    """N of Eq. 4.16 counts one bandit: with the other's 900 conflicts, ln N would explore more."""
     fresh, experienced = learner(), learner()
     for arm in (0, 1):
         for _ in range(450):
@@ -127,7 +127,7 @@ def test_what_is_known_of_one_swarm_does_not_count_for_another() -> None:
     assert sum(experienced.bandits[1].count) == 900
 
 
-def test_discounting_is_for_each_conflict_of_that_bandit() -> None:
+def test_discounting_counts_the_conflicts_of_one_bandit() -> None:
     policy = learner("learner(rule='discounted-ucb(discount=0.5)')")
     for opponent in (0, 1, 1, 1, 0):
         policy.choose(opponent)
@@ -136,7 +136,7 @@ def test_discounting_is_for_each_conflict_of_that_bandit() -> None:
     assert sum(policy.bandits[1].count) == 1.75
 
 
-def test_the_periods_of_random_choices_are_those_of_one_bandit() -> None:
+def test_periodic_random_choices_count_one_bandit() -> None:
     policy = learner("learner(rule='periodic-random(every=4)')", seed=3)
     greedy = {0: FIGHT, 1: FLIGHT}
     seen: dict[int, list[Action]] = {0: [], 1: []}
@@ -154,7 +154,7 @@ def test_the_periods_of_random_choices_are_those_of_one_bandit() -> None:
 @pytest.mark.parametrize(
     ("rewards", "best"), [({"flight": 9.0, "fight": 3.0}, FLIGHT), ({"flight": 3.0, "fight": 9.0}, FIGHT)]
 )
-def test_after_learning_it_takes_the_best_without_exploring_or_learning(
+def test_a_frozen_learner_chooses_the_best_action_and_learns_nothing(
     rewards: dict[str, float], best: Action
 ) -> None:
     policy = learner("inter-learner(rule='uniform-random')")
@@ -168,7 +168,7 @@ def test_after_learning_it_takes_the_best_without_exploring_or_learning(
     assert repr(policy.bandits) == before
 
 
-def test_without_data_it_flees() -> None:
+def test_a_frozen_learner_without_data_flees() -> None:
     for actions in ((FLIGHT, FIGHT), (FIGHT, FLIGHT)):
         policy = make_policy("learner", setting(actions=actions))
         assert isinstance(policy, Learner)
@@ -177,7 +177,7 @@ def test_without_data_it_flees() -> None:
         assert policy.choose(0) == policy.choose(1) == FLIGHT
 
 
-def test_one_tried_arm_is_the_best_even_if_it_is_fight_and_bad() -> None:
+def test_the_only_tried_arm_is_the_best() -> None:
     policy = learner("inter-learner(reward='single-swarm')")
     action = policy.choose(0)
     policy.learn(10.0, 0.0, 8)
@@ -185,7 +185,7 @@ def test_one_tried_arm_is_the_best_even_if_it_is_fight_and_bad() -> None:
     assert policy.choose(0) == action
 
 
-def test_a_snapshot_tells_all_that_is_known() -> None:
+def test_a_snapshot_has_all_learned_values() -> None:
     policy = learner()
     teach(policy, 0, {"flight": 3.0, "fight": 1.0}, rounds=1)
     rows = policy.snapshot()
@@ -202,7 +202,7 @@ def test_a_snapshot_tells_all_that_is_known() -> None:
     assert snapshot_of(make_policy("avoid", setting())) == []
 
 
-def test_copies_go_on_alike_and_apart() -> None:
+def test_copies_continue_alike_and_independently() -> None:
     policy = learner("learner(rule='uniform-random')")
     teach(policy, 0, {"flight": 3.0, "fight": 1.0}, rounds=9)
     twins = [copy.deepcopy(policy), pickle.loads(pickle.dumps(policy)), policy]
@@ -211,7 +211,7 @@ def test_copies_go_on_alike_and_apart() -> None:
     assert len(set(runs[0])) == 2
 
 
-def test_the_random_policy_fights_others_half_of_the_time_and_never_its_own() -> None:
+def test_the_random_policy_fights_others_half_of_the_time_and_its_own_swarm_never() -> None:
     policy = make_policy("random", setting(swarms=3))
     assert {policy.choose(1) for _ in range(100)} == {FLIGHT}
     counts = Counter((opponent, policy.choose(opponent).name) for _ in range(2000) for opponent in (0, 2))
@@ -219,7 +219,7 @@ def test_the_random_policy_fights_others_half_of_the_time_and_never_its_own() ->
     assert len(counts) == 4
 
 
-def test_policies_draw_from_streams_of_their_own() -> None:
+def test_policies_draw_only_from_their_own_streams() -> None:
     streams = Streams(4, 9)
     where = Setting(1, 2, (FLIGHT, FIGHT), streams)
     for text in ("random", "learner(rule='uniform-random')", "learner(rule='greedy')"):
@@ -230,14 +230,14 @@ def test_policies_draw_from_streams_of_their_own() -> None:
         assert streams.draws(purpose).random() == stream(4, 9, purpose).random()
 
 
-def test_learners_are_dealt_out_like_any_policy() -> None:
+def test_learners_are_dealt_out_like_other_policies() -> None:
     text = "inter-learner(reward='wlu(delta={1: 0.1, 2: 0.2}, b=1)')+avoid"
     learner = text.removesuffix("+avoid")
     assert [spec.text for spec in parse_policies(text)] == [learner, "avoid"]
     assert [spec.text for spec in deal(text, 3)] == [learner, learner, "avoid"]
 
 
-def test_there_must_be_another_swarm_to_learn_about() -> None:
+def test_an_inter_learner_needs_another_swarm() -> None:
     with pytest.raises(InputError, match=r"^policy.about='inter': needs another swarm"):
         make_policy("inter-learner", setting(swarm=0, swarms=1))
     assert set(learner(swarm=0, swarms=1).bandits) == {0}

@@ -1,4 +1,4 @@
-"""Bad input to learning, as a user writes it: one line that names the field, the value, what is allowed."""
+"""Errors of invalid learners: one line with field, value and rule."""
 
 import pytest
 
@@ -65,7 +65,7 @@ def test_the_line_names_field_value_and_what_is_allowed(
 
 
 @pytest.mark.parametrize("text", ["learner(gamma=0.1)", "avoid(delta=1)", "random(p=0.3)"])
-def test_an_argument_that_a_policy_does_not_take_is_refused_in_the_users_words(text: str) -> None:
+def test_errors_of_unknown_arguments_name_no_internals(text: str) -> None:
     with pytest.raises(InputError) as caught:
         make_policy(text, SETTING)
     for word in ("__init__", "positional", "_fixed()", "Checked"):
@@ -74,7 +74,7 @@ def test_an_argument_that_a_policy_does_not_take_is_refused_in_the_users_words(t
 
 @pytest.mark.parametrize("name", ["delta", "b"])
 @pytest.mark.parametrize("opponent", [3, 0, -1])
-def test_an_opponent_that_is_not_in_the_game_is_refused(name: str, opponent: int) -> None:
+def test_an_opponent_outside_the_game_is_refused(name: str, opponent: int) -> None:
     with pytest.raises(InputError) as caught:
         make_policy(f"learner(reward='wlu({name}={{{opponent}: 0.5}})')", SETTING)
     assert caught.value.field.startswith("policy.reward")
@@ -85,7 +85,7 @@ def test_an_opponent_that_is_not_in_the_game_is_refused(name: str, opponent: int
     ("about", "unknown", "known"), [("inter-learner", 2, 1), ("intra-learner", 1, 2)]
 )
 @pytest.mark.parametrize("name", ["delta", "b"])
-def test_an_opponent_that_nothing_is_learned_about_is_refused(
+def test_an_opponent_that_is_not_learned_about_is_refused(
     name: str, about: str, unknown: int, known: int
 ) -> None:
     setting = SETTING._replace(swarm=1, swarms=2)
@@ -104,19 +104,19 @@ def test_an_opponent_that_nothing_is_learned_about_is_refused(
         "intra-learner(about='both')",
     ],
 )
-def test_what_makes_a_policy_what_it_is_called_is_no_argument_of_it(text: str) -> None:
+def test_fixed_properties_of_named_policies_are_no_arguments(text: str) -> None:
     with pytest.raises(InputError):
         make_policy(text, SETTING)
 
 
-def test_an_action_takes_no_arguments_and_the_line_does_not_call_it_unknown() -> None:
+def test_an_action_takes_no_arguments() -> None:
     with pytest.raises(InputError) as caught:
         make_policy("flight(duration=1)", SETTING)
     assert "flight" not in caught.value.allowed.split("one of")[-1]
 
 
 @pytest.mark.parametrize("learning", [-1.0, float("nan"), float("inf"), "long"])
-def test_time_for_learning_out_of_range(learning: float) -> None:
+def test_invalid_durations_of_learning_are_refused(learning: float) -> None:
     with pytest.raises(InputError) as caught:
         ForagingModel(n=4, policies="avoid,learner", learning=learning)
     assert caught.value.field == "learning"

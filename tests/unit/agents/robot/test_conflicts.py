@@ -1,4 +1,4 @@
-"""What a robot does in a conflict, decision by decision, in games set up by hand (section 2.3)."""
+"""Behaviour of a robot in a conflict, in games set up by hand (section 2.3)."""
 
 import itertools
 import math
@@ -13,11 +13,11 @@ from kswarms.model.game_model import GameModel
 Scene = Callable[..., GameModel]
 
 AWAY_FROM_IT = [(0.25, 0.05, 0.0)]
-"""A robot ahead of one at the origin that heads along x, without an eye for it."""
+"""A robot ahead of one at the origin that heads along x, and facing away from it."""
 
 BEHIND = math.pi
 STEP = 2.96 * 0.1
-"""Most that a robot turns in a period (rad)."""
+"""Maximum turn in a period (rad)."""
 
 
 def pose(model: GameModel, robot: int = 0) -> tuple[float, float, float]:
@@ -51,7 +51,7 @@ def test_a_fight_turns_to_the_bearing_and_drives(scene: Scene) -> None:
 
 
 def test_a_flight_turns_to_the_most_vacant_direction(scene: Scene) -> None:
-    # All sectors but the one at 90° hold a robot, which looks outward, nearer than the flight range.
+    # All sectors except the one at 90° contain a robot within the flight range, facing outward.
     around = [k * math.pi / 4 for k in range(8) if k != 2]
     ring = [(0.3 * math.cos(a), 0.3 * math.sin(a), a) for a in around]
     model = scene([(0.0, 0.0, 0.0)], ring, record="conflicts")
@@ -63,7 +63,7 @@ def test_a_flight_turns_to_the_most_vacant_direction(scene: Scene) -> None:
     assert model.robots[0].t_a == [0, turn + 17]
 
 
-def test_a_conflict_is_logged_as_it_was_at_its_start(scene: Scene) -> None:
+def test_a_conflict_is_logged_as_at_its_start(scene: Scene) -> None:
     # Four robots within the active range of 0.30 m and one within the flight range, no wall.
     ring = [(0.3 * math.cos(a), 0.3 * math.sin(a), a) for a in (0.0, 0.8, 1.6, 2.4, 3.2)]
     model = scene([(0.0, 0.1, 0.0)], [(x, y + 0.1, a) for x, y, a in ring], record="conflicts", duration=30.0)
@@ -84,7 +84,7 @@ def test_a_conflict_is_logged_as_it_was_at_its_start(scene: Scene) -> None:
 
 
 def test_walls_count_for_a_flight(scene: Scene) -> None:
-    # Ahead a robot, at the right a wall, and behind one too: the flight range is free towards −x alone.
+    # A robot ahead, walls at the right and behind: the flight range is free only towards −x.
     model = scene(
         [(0.87, -0.6, math.pi / 2)], [(0.87, -0.4, math.pi / 2), (0.6, -0.35, 2.0), (0.6, -0.87, -2.0)]
     )
@@ -124,7 +124,7 @@ def test_the_nearest_robot_ahead_is_met(scene: Scene) -> None:
         (0.25, BEHIND, False),
     ],
 )
-def test_who_is_near_and_ahead_starts_a_conflict(
+def test_a_near_robot_ahead_starts_a_conflict(
     scene: Scene, distance: float, bearing: float, met: bool
 ) -> None:
     other = (distance * math.cos(bearing + 0.3), distance * math.sin(bearing + 0.3), bearing + 0.3)
@@ -136,7 +136,7 @@ def test_who_is_near_and_ahead_starts_a_conflict(
 
 
 def test_the_next_conflict_starts_at_once_if_its_condition_holds(scene: Scene) -> None:
-    # Two who fight head on lock: each action ends with the other one still ahead.
+    # Two robots that fight head on lock: each action ends with the other robot still ahead.
     model = scene(
         [(-0.1, 0.0, 0.0)], [(0.1, 0.0, math.pi)], policies="attack,attack", record="conflicts", duration=20.0
     )
@@ -163,7 +163,7 @@ def test_program_time_is_between_action_and_next_conflict(scene: Scene) -> None:
 
 
 @pytest.mark.parametrize("preempt", [False, True])
-def test_another_robot_ahead_interrupts_an_action_only_if_asked_to(scene: Scene, preempt: bool) -> None:
+def test_another_robot_ahead_interrupts_an_action_only_with_preempt(scene: Scene, preempt: bool) -> None:
     model = scene(
         [(0.0, 0.0, 0.0)],
         [(0.25, 0.0, 0.0), (0.0, 0.8, 1.0)],
@@ -179,15 +179,15 @@ def test_another_robot_ahead_interrupts_an_action_only_if_asked_to(scene: Scene,
     assert model.robots[0].conflicts == [0, 2 if preempt else 1]
     assert [(c["t_a"], c["t_p"]) for c in conflicts(model)] == ([(10, 0)] if preempt else [])
     if preempt:
-        # The end of the fight that was interrupted, due at 30, passes without effect on the second one.
+        # The end of the interrupted fight, due at 30, has no effect on the second fight.
         model.robots[1].position = np.array([-0.5, -0.5])
         model.env.run(until=38)
         assert model.robots[0].state == "A"
         assert model.robots[0].t_a == [0, 10]
 
 
-def test_an_interrupted_turn_has_no_end(scene: Scene) -> None:
-    # A slow turn to the left, which would take 34 periods, gives way to a longer one to the right.
+def test_the_end_of_an_interrupted_turn_has_no_effect(scene: Scene) -> None:
+    # A slow turn to the left of 34 periods is interrupted by a longer one to the right.
     model = scene(
         [(0.0, 0.0, 0.0)],
         [(0.3 * math.cos(1.0), 0.3 * math.sin(1.0), 1.0), (0.0, 0.8, 1.0)],

@@ -1,4 +1,4 @@
-"""What a robot does between conflicts, decision by decision, in games set up by hand (section 2.3)."""
+"""Behaviour of a robot between conflicts, in games set up by hand (section 2.3)."""
 
 import math
 from collections.abc import Callable
@@ -16,10 +16,10 @@ from kswarms.model.game_model import GameModel
 Scene = Callable[..., GameModel]
 
 AWAY_FROM_IT = [(0.25, 0.05, 0.0)]
-"""A robot ahead of one at the origin that heads along x, without an eye for it."""
+"""A robot ahead of one at the origin that heads along x, and facing away from it."""
 
 STEP = 2.96 * 0.1
-"""Most that a robot turns in a period (rad)."""
+"""Maximum turn in a period (rad)."""
 
 
 def pose(model: GameModel, robot: int = 0) -> tuple[float, float, float]:
@@ -42,7 +42,7 @@ def test_homing_turns_in_place_and_drives_straight(scene: Scene) -> None:
     for now in range(turn + 1, turn + 36):
         before = model.robots[0].position.copy()
         model.env.run(until=now)
-        # The wander clock, of 0.2 s here, is not asked.
+        # The legs of the wandering, 0.2 s long, have no effect.
         assert pose(model)[2] == pytest.approx(target)
         assert math.dist(before, model.robots[0].position) == pytest.approx(0.015)
     assert (model.pucks, model.robots[0].carrying) == ([0], True)
@@ -59,7 +59,7 @@ def test_homing_tolerates_a_small_error(scene: Scene, offset: float) -> None:
     assert drives == (abs(offset) < HOMING_ERROR)
 
 
-def test_on_its_way_home_it_turns_again_when_the_error_has_grown(scene: Scene) -> None:
+def test_a_homing_robot_turns_again_when_the_error_grows(scene: Scene) -> None:
     model = scene([(-0.1, 0.0, math.pi + 0.045)])
     carry(model)
     base = model.arena.bases[0]
@@ -71,7 +71,7 @@ def test_on_its_way_home_it_turns_again_when_the_error_has_grown(scene: Scene) -
             assert abs(error) <= HOMING_ERROR + 1e-9
 
 
-def test_out_of_sight_of_its_base_it_wanders(scene: Scene) -> None:
+def test_a_robot_out_of_sight_of_its_base_wanders(scene: Scene) -> None:
     model = scene([(0.03, 0.0, 0.5)])
     carry(model)
     model.env.run(until=1)
@@ -79,15 +79,15 @@ def test_out_of_sight_of_its_base_it_wanders(scene: Scene) -> None:
     assert math.dist(pose(model)[:2], (0.03, 0.0)) == pytest.approx(0.015)
 
 
-def test_others_bases_are_no_home(scene: Scene) -> None:
+def test_bases_of_other_swarms_do_not_count(scene: Scene) -> None:
     model = scene([(0.78, 0.0, 1.0)], [(0.0, 0.0, 0.0)])
     carry(model)
     model.env.run(until=10)
     assert (model.pucks, model.robots[0].carrying) == ([0, 0], True)
 
 
-def test_pucks_change_hands_in_action_too(scene: Scene) -> None:
-    # Robot 0 fights its way over a station, robot 2 over its base.
+def test_pucks_are_picked_up_and_deposited_during_actions(scene: Scene) -> None:
+    # Robot 0 fights across a station, robot 2 across its base.
     model = scene(
         [(-0.2, 0.66, 0.0), (-1 + 0.13, -0.4, math.pi / 2)],
         [(0.05, 0.66, 0.0), (-1 + 0.13, -0.15, math.pi / 2)],
@@ -104,7 +104,7 @@ def test_pucks_change_hands_in_action_too(scene: Scene) -> None:
 
 
 @pytest.mark.parametrize(("drive", "drive_action"), [(0.6, 0.6), (0.7, 0.6), (0.3, 0.9)])
-def test_program_and_action_have_their_drives(scene: Scene, drive: float, drive_action: float) -> None:
+def test_program_and_action_have_their_own_drives(scene: Scene, drive: float, drive_action: float) -> None:
     alone = scene([(0.0, 0.0, 0.0)], drives=(drive, drive_action))
     carrying = scene([(-0.3, 0.0, math.pi)], drives=(drive, drive_action))
     carry(carrying)
@@ -146,7 +146,7 @@ CORNERS = [(0.90, 0.90, 0.8), (-0.91, 0.0, 3.0), (0.3, -0.91, -1.0), (-0.86, 0.9
 
 
 def wall_turns(scene: Scene, start: tuple[float, float, float], **changes: Any) -> list[float]:
-    """Return the headings that a robot at a wall turns to, with many seeds."""
+    """Return the headings after the turn at a wall, for many seeds."""
     headings = []
     for seed in range(60):
         model = scene([start], changes=changes, seed=seed)
@@ -155,7 +155,7 @@ def wall_turns(scene: Scene, start: tuple[float, float, float], **changes: Any) 
         while model.states.turn_rate[0] != 0:
             model.env.run(until=model.env.now + 1)
         headings.append(pose(model)[2])
-        assert math.dist(pose(model)[:2], start[:2]) < 0.016  # it turned in place, and drives now
+        assert math.dist(pose(model)[:2], start[:2]) < 0.016    # it turned in place and drives now
     return headings
 
 
@@ -185,7 +185,7 @@ def test_walls_are_ignored_in_action_and_on_the_way_home(scene: Scene) -> None:
     model.env.run(until=39)
     assert model.robots[0].state == "A"
     assert pose(model)[2] == pytest.approx(0.0)
-    # With a base at the wall, one whose way leads along it drives home.
+    # With a base at the wall, a robot drives home along the wall.
     model = scene([(-0.915, 0.7, -1.4)], changes={"wall_distance": 0.5, "base_range": 1.0})
     carry(model)
     while model.pucks == [0]:
@@ -194,7 +194,7 @@ def test_walls_are_ignored_in_action_and_on_the_way_home(scene: Scene) -> None:
 
 
 def legs_begun(model: GameModel) -> list[int]:
-    """Return when robots began legs that do not end before the game does."""
+    """Return the starts of legs that do not end before the game does."""
     events: list[Any] = [event for *_, event in model.env._queue]
     ends = [(time, event) for (time, *_), event in zip(model.env._queue, events, strict=True)]
     return sorted(int(time - event._delay) for time, event in ends if event.value == "leg")
@@ -209,7 +209,7 @@ def test_a_new_leg_begins_after_every_turn(scene: Scene, monkeypatch: pytest.Mon
         begin(robot)
 
     monkeypatch.setattr(Krembot, "begin_wall_turn", noted)
-    # Without pucks, so that it never drives home.
+    # Stations are tiny, so it never carries a puck home.
     model = scene([(0.0, 0.0, 0.3)], changes={"leg_mean": 1e6, "station_radius": 1e-6}, duration=300.0)
     model.env.run(until=2999)
     assert len(turns) > 10
@@ -221,14 +221,14 @@ def test_a_new_leg_begins_after_every_turn(scene: Scene, monkeypatch: pytest.Mon
 def test_a_new_leg_begins_after_an_action(scene: Scene) -> None:
     model = scene([(0.0, 0.0, 0.0)], [(0.25, 0.0, 0.0)], changes={"leg_mean": 1e6})
     model.env.run(until=1)
-    assert legs_begun(model) == [0]  # that of robot 1
+    assert legs_begun(model) == [0]    # the leg of robot 1
     while model.robots[0].state == "A":
         model.env.run(until=model.env.now + 1)
     action = model.robots[0].t_a[1]
     assert legs_begun(model) == [0, action]
 
 
-def test_the_nearest_gets_the_last_puck(scene: Scene) -> None:
+def test_the_nearest_robot_gets_the_last_puck(scene: Scene) -> None:
     station = (0.0, 0.66)
     model = scene(
         [(-0.09, station[1], math.pi), (0.085, station[1], 0.0)], [(0.0, station[1] + 0.15, 1.57)], supply=1

@@ -1,4 +1,4 @@
-"""The ring of eight sensors and the walls, against geometry worked out by hand (sections 2.2, 2.3)."""
+"""The ring of eight sensors and the walls, compared with geometry computed by hand (sections 2.2, 2.3)."""
 
 import math
 
@@ -78,7 +78,7 @@ def test_walls_within_a_tenth_ahead(x: float, y: float, heading: float, half_ang
 
 
 @given(coordinates, coordinates, angles, st.floats(0.01, 3.0))
-def test_one_ray_meets_the_wall_that_it_ends_at(x: float, y: float, heading: float, reach: float) -> None:
+def test_a_single_ray_meets_the_wall_at_its_end(x: float, y: float, heading: float, reach: float) -> None:
     distance = wall_ray(x, y, math.cos(heading), math.sin(heading), 1.0)
     assume(abs(distance - reach) > 1e-9)
     assert (walls_met(x, y, heading, 1.0, reach, 0.0) != 0) == (distance < reach)
@@ -90,7 +90,7 @@ def test_walls_met_lie_ahead(x: float, y: float, heading: float, reach: float, h
     assert heads_for(heading, met) == (met != 0)
     for wall in (RIGHT, LEFT, TOP, BOTTOM):
         assert not met & wall or heads_for(heading, wall)
-    # More rays never meet less.
+    # Additional rays never meet fewer walls.
     assert walls_met(x, y, heading, 1.0, reach, 0.0) & ~met == 0
 
 
@@ -115,7 +115,7 @@ def test_heading_for_a_wall(heading: float, walls: int, heads: bool) -> None:
 def ring(
     heading: float, *others: tuple[float, float], at: tuple[float, float] = (0.0, 0.0), limit: float = 9.0
 ) -> list[float]:
-    """Return what a robot senses in a square of 4 m, the others given by bearing and distance."""
+    """Return the sensor readings in a square of 4 m, with other robots given by bearing and distance."""
     x, y = at
     places = [(x + d * math.cos(heading + b), y + d * math.sin(heading + b)) for b, d in others]
     positions = np.array([at, *places])
@@ -136,14 +136,14 @@ def ring(
     return [float(distance) for distance in free]
 
 
-def test_alone_it_senses_the_walls_counter_clockwise_from_ahead() -> None:
+def test_walls_are_sensed_counter_clockwise_from_ahead() -> None:
     diagonal = 2.0 * math.sqrt(2) - RADIUS
     assert ring(0.0) == pytest.approx([1.9, diagonal] * 4)
     assert ring(math.pi / 2, at=(1.0, 0.0))[:7:2] == pytest.approx([1.9, 2.9, 1.9, 0.9])
 
 
 @given(angles, st.floats(-0.499, 7.499), st.floats(0.2, 1.5))
-def test_another_is_sensed_by_the_sensor_of_its_bearing(heading: float, bearing: float, far: float) -> None:
+def test_a_robot_is_sensed_by_the_sensor_of_its_bearing(heading: float, bearing: float, far: float) -> None:
     assume(abs(bearing % 1.0 - 0.5) > 1e-6)
     alone, seen = ring(heading), ring(heading, (bearing * SECTOR, far))
     sensor = round(bearing)
@@ -151,17 +151,17 @@ def test_another_is_sensed_by_the_sensor_of_its_bearing(heading: float, bearing:
     assert seen[:sensor] + seen[sensor + 1 :] == alone[:sensor] + alone[sensor + 1 :]
 
 
-def test_a_sensor_reports_the_nearest() -> None:
+def test_a_sensor_reports_the_nearest_robot() -> None:
     seen = ring(0.4, (0.1, 0.9), (-0.2, 0.5), (math.pi, 0.7), (0.3, 1.1))
     assert (seen[0], seen[4]) == pytest.approx((0.3, 0.5))
 
 
-def test_beyond_its_limit_others_are_passed_over() -> None:
+def test_robots_beyond_the_limit_are_skipped() -> None:
     assert ring(0.0, (0.0, 0.71), limit=0.5)[0] == pytest.approx(1.9)
     assert ring(0.0, (0.0, 0.69), limit=0.5)[0] == pytest.approx(0.49)
 
 
-def test_only_the_given_others_count() -> None:
+def test_only_the_given_robots_count() -> None:
     positions = np.array([[0.0, 0.0], [0.5, 0.0], [0.3, 0.0]])
     free = np.empty(8)
     sense(0, 1.0, 0.0, positions, np.array([1, 0, 2]), 2, RADIUS, 2.0, 9.0, free)
@@ -185,13 +185,13 @@ def test_an_active_sensor_reads_the_nearest_robot_in_its_sector() -> None:
     assert read([(0.0, 0.0), *others], met=1) == [1, -1, -1, -1, 3, -1, -1, -1]
 
 
-def test_the_robot_met_is_read_though_another_is_nearer() -> None:
+def test_the_opponent_is_read_even_if_another_robot_is_nearer() -> None:
     others = [polar(0.3, 0.9), polar(0.25, 1.15)]
     assert read([(0.0, 0.0), *others], met=1) == [-1, 1, -1, -1, -1, -1, -1, -1]
     assert read([(0.0, 0.0), *others], met=2) == [-1, 2, -1, -1, -1, -1, -1, -1]
 
 
-def test_a_wall_hides_a_robot_behind_it_unless_it_is_met() -> None:
+def test_a_wall_hides_robots_except_the_opponent() -> None:
     # The wall is 0.29 m off along the middle of the sensor ahead; the robot, nearly parallel to it, 0.35 m.
     heading = math.pi / 8
     x, y = polar(0.55, 0.09)
@@ -203,7 +203,7 @@ def test_a_wall_hides_a_robot_behind_it_unless_it_is_met() -> None:
 
 
 @given(st.lists(st.tuples(coordinates, coordinates), min_size=2, max_size=8, unique=True), angles)
-def test_the_robots_read_are_those_whose_distance_a_sensor_measures(
+def test_the_robots_read_have_the_distances_that_sensors_measure(
     positions: list[tuple[float, float]], heading: float
 ) -> None:
     forward = math.cos(heading), math.sin(heading)

@@ -1,7 +1,7 @@
-"""Algorithm 1 in real games: close, reward, and only then choose; and the sums are those of the conflicts.
+"""Algorithm 1 in games: close and reward a conflict before the next choice.
 
-What the policy is told is compared with the table of conflicts, and both with the robots' states, watched
-from outside in every control period.
+The arguments of `learn` are compared with the table of conflicts, and both with the robots' states in every
+control period.
 """
 
 import math
@@ -25,7 +25,7 @@ Row = dict[str, Any]
 
 
 class Spy(Learner):
-    """A learner that keeps a record of what it is asked and told."""
+    """A learner that records the calls of its methods."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
@@ -52,7 +52,7 @@ def game(policy: str, preempt: bool = False, size: int = 7, learning: float = LE
 
 
 def learned_rows(model: GameModel) -> Iterator[tuple[Any, list[Row]]]:
-    """Return the second swarm's robots, each with its rows of the table of conflicts in the learning."""
+    """Return the robots of the second swarm with their conflicts of the learning phase."""
     table = model.tables()["conflicts"]
     rows = [dict(zip(table, values, strict=True)) for values in zip(*table.values(), strict=True)]
     for robot in model.members[1]:
@@ -84,12 +84,12 @@ def test_each_conflict_is_closed_before_the_next_choice(spied: GameModel) -> Non
         names = [call[0] for call in robot.policy.calls]
         learned = names.count("learn")
         assert learned > 10
-        # In the learning, choose and learn take turns; the last conflict is open, and nothing is told after.
+        # During learning, choose and learn alternate. The last conflict is not closed.
         assert names[: 2 * learned] == ["choose", "learn"] * learned
         assert set(names[2 * learned :]) == {"choose"}
 
 
-def test_what_is_told_agrees_with_the_table_of_conflicts(spied: GameModel) -> None:
+def test_the_arguments_of_learn_agree_with_the_table_of_conflicts(spied: GameModel) -> None:
     for robot, rows in learned_rows(spied):
         learned = [call[1:] for call in robot.policy.calls if call[0] == "learn"]
         choices = [call[1:] for call in robot.policy.calls if call[0] == "choose"]
@@ -113,13 +113,13 @@ def test_a_conflict_has_no_program_time_if_the_next_begins_as_its_action_ends(sp
             overtaken += cut_short
             at_once += not cut_short and row["t_p"] == 0
     assert at_once > 0
-    # Only another robot ahead, and only with `preempt`, ends an action before its time.
+    # Actions are interrupted only by another robot ahead and only with `preempt`.
     assert (overtaken > 0) == spied.game.parameters.preempt
 
 
 @pytest.mark.parametrize("preempt", [False, True])
-def test_times_are_those_seen_from_outside(monkeypatch: pytest.MonkeyPatch, preempt: bool) -> None:
-    """T(a): periods in state A from a conflict's start on; T(p): those in state P up to the next one."""
+def test_times_agree_with_the_states_in_every_period(monkeypatch: pytest.MonkeyPatch, preempt: bool) -> None:
+    """T(a): periods in state A from the start of a conflict; T(p): periods in state P until the next one."""
     monkeypatch.setitem(POLICIES, "spy", Spy)
     what = game("spy", preempt=preempt, learning=60.0).replace(sample_period=PERIOD)
     model = GameModel(what, seed=1)
@@ -139,7 +139,7 @@ def test_times_are_those_seen_from_outside(monkeypatch: pytest.MonkeyPatch, pree
     for robot in model.members[1]:
         closed = [call[1:3] for call in robot.policy.calls if call[0] == "learn"]
         seen = [(t_a * PERIOD, t_p * PERIOD) for t_a, t_p in watched[robot.index]]
-        # The conflict open at the switch is told to nobody; one begun in the last period was not seen.
+        # The conflict that is open at the switch is not learned from. One of the last period is not seen.
         assert len(closed) == sum(call[0] == "choose" for call in robot.policy.calls) - 1
         assert len(seen) - len(closed) in (0, 1)
         for ours, theirs in zip(seen, closed, strict=False):
@@ -169,7 +169,7 @@ def test_the_bandits_hold_the_sums_over_the_table(played: GameModel) -> None:
                     assert own[-1]["q"] == bandit.value(arm)
 
 
-def test_the_rewards_of_the_table_are_those_of_its_times(played: GameModel) -> None:
+def test_the_rewards_of_the_table_follow_from_its_times(played: GameModel) -> None:
     individual = "individual" in played.game.swarms[1].policy
     for robot, rows in learned_rows(played):
         for row in rows[:-1]:
@@ -178,7 +178,7 @@ def test_the_rewards_of_the_table_are_those_of_its_times(played: GameModel) -> N
                 assert math.isnan(row["q"])
                 continue
             active, t_a, t_p = row["active"] / 8, row["t_a"], row["t_p"]
-            assert 1 <= row["active"] <= 8  # at least the one that sees the robot ahead
+            assert 1 <= row["active"] <= 8    # at least the sensor towards the robot ahead
             if individual:
                 expected = active * t_p - active * 0.125 * t_a
             else:
@@ -187,8 +187,8 @@ def test_the_rewards_of_the_table_are_those_of_its_times(played: GameModel) -> N
             assert row["reward"] == pytest.approx(expected, abs=1e-9)
 
 
-def test_every_choice_is_made_on_all_that_was_closed_before(played: GameModel) -> None:
-    """Redo each choice from the rows above it in the table: Eqs. 4.15 and 4.16, untried arms first."""
+def test_every_choice_follows_from_all_closed_conflicts(played: GameModel) -> None:
+    """Recompute each choice from the earlier rows of the table (Eqs. 4.15, 4.16), untried arms first."""
     gamma = 0.0 if "greedy" in played.game.swarms[1].policy else UCB().gamma
     redone = 0
     for robot, rows in learned_rows(played):
@@ -214,7 +214,7 @@ def test_every_choice_is_made_on_all_that_was_closed_before(played: GameModel) -
 
 
 @pytest.mark.parametrize("about", ["inter", "intra"])
-def test_against_the_others_it_takes_its_fixed_action(about: str) -> None:
+def test_a_learner_takes_a_fixed_action_against_swarms_it_does_not_learn_about(about: str) -> None:
     model = GameModel(game(f"{about}-learner"), seed=8, record="conflicts")
     model.play()
     learned_about = {"inter": 1, "intra": 2}[about]

@@ -1,4 +1,4 @@
-"""The forms of a multi-swarm game, and checks of them that can fail (section 1.1)."""
+"""Forms of a multi-swarm game (section 1.1)."""
 
 import networkx as nx
 import numpy as np
@@ -27,7 +27,7 @@ PENNIES = zero_sum(ACTIONS, ACTIONS, np.array([[1, -1], [-1, 1]]))
 SKEWED = zero_sum(ACTIONS, ("flight", "fight", "wait"), np.array([[2, -1, 0], [0, 4, 0.5]]))
 
 
-def test_zero_sum_is_told_from_general_sum() -> None:
+def test_zero_sum_and_general_sum_are_distinguished() -> None:
     assert PENNIES.is_zero_sum()
     assert SKEWED.is_zero_sum()
     assert not DILEMMA.is_zero_sum()
@@ -36,8 +36,8 @@ def test_zero_sum_is_told_from_general_sum() -> None:
     assert not NormalForm(SKEWED.rows, SKEWED.columns, SKEWED.own, nearly).is_zero_sum()
 
 
-def test_a_potential_game_is_told_from_one_that_is_none() -> None:
-    # Whoever deserts from (3, 3) gains 2, from (0, 5) and (5, 0) gains 1.
+def test_a_game_with_a_potential_and_one_without() -> None:
+    # Deviating from (3, 3) gains 2, from (0, 5) and (5, 0) gains 1.
     potential = DILEMMA.potential()
     assert potential is not None
     assert potential.tolist() == [[0, 2], [2, 3]]
@@ -49,7 +49,7 @@ def test_a_potential_game_is_told_from_one_that_is_none() -> None:
 
 def test_a_potential_of_three_players() -> None:
     shared = np.arange(12.0).reshape(2, 3, 2) ** 2
-    # What does not depend on the own action changes nothing.
+    # Terms that do not depend on the own action have no effect.
     payoffs = [shared + np.arange(6.0).reshape(1, 3, 2), shared - np.arange(4.0).reshape(2, 1, 2), shared]
     potential = exact_potential(payoffs)
     assert potential is not None
@@ -65,7 +65,7 @@ def test_payoffs_must_fill_the_matrix(payoffs: list[list[float]]) -> None:
 
 
 @pytest.mark.parametrize("actions", [("flight", "flight"), ()])
-def test_actions_have_names_of_their_own(actions: tuple[str, ...]) -> None:
+def test_names_of_actions_are_unique(actions: tuple[str, ...]) -> None:
     with pytest.raises(InputError, match=r"columns=.*must be actions of different names"):
         NormalForm(ACTIONS, actions, np.zeros((2, len(actions))), np.zeros((2, len(actions))))
 
@@ -79,7 +79,7 @@ def test_payoffs_do_not_change() -> None:
         form.own[0, 0] = 5.0
 
 
-def test_nature_draws_a_swarm_and_both_act_at_once() -> None:
+def test_nature_draws_a_swarm_and_both_players_act_simultaneously() -> None:
     tree = extensive_form({1: DILEMMA, 2: SKEWED}, {1: 0.25, 2: 0.75})
     assert nx.is_arborescence(tree)
     assert [tree.nodes[node]["player"] for node in ((), (2,), (2, "fight"))] == [NATURE, OWN, MET]
@@ -88,7 +88,7 @@ def test_nature_draws_a_swarm_and_both_act_at_once() -> None:
     assert tree.nodes[2, "flight", "fight"]["payoffs"] == (-1.0, 1.0)
     leaves = [node for node in tree if not tree.out_degree(node)]
     assert len(leaves) == 4 + 6
-    # The one met knows the swarm it meets, not what the other does.
+    # The robot met knows the swarm but not the other's action.
     sets = nx.get_node_attributes(tree, "information")
     assert sets[2, "flight"] == sets[2, "fight"] != sets[1, "flight"]
     assert sets[(1,)] != sets[(2,)]
@@ -103,7 +103,7 @@ def test_the_tree_folds_into_a_normal_form_for_each_swarm() -> None:
         assert np.array_equal(form.met, source.met)
 
 
-def test_a_tree_in_which_the_first_move_is_seen_does_not_fold() -> None:
+def test_a_tree_with_an_observed_first_move_does_not_fold() -> None:
     tree = extensive_form({1: DILEMMA})
     tree.nodes[1, "fight"]["information"] = (1, MET, "saw a fight")
     with pytest.raises(InputError, match=r"S1=.*must be one information set"):
@@ -120,7 +120,7 @@ def test_chances_must_be_probabilities(chances: dict[int, float]) -> None:
         extensive_form({1: DILEMMA, 2: PENNIES}, chances)
 
 
-def test_there_must_be_a_swarm_to_meet() -> None:
+def test_at_least_one_swarm_is_required() -> None:
     with pytest.raises(InputError, match="must have a game for at least one swarm"):
         extensive_form({})
 
@@ -134,7 +134,7 @@ def test_the_polymatrix_game_has_loops_within_and_edges_between_swarms() -> None
     assert not is_pairwise_zero_sum(polymatrix({(1, 2): DILEMMA}))
 
 
-def test_payoffs_of_swarms_that_act_as_one() -> None:
+def test_payoffs_of_swarms_that_act_as_one_player() -> None:
     graph = polymatrix({(1, 1): DILEMMA, (1, 2): PENNIES, (2, 2): DILEMMA})
     payoffs = swarm_payoffs(graph)
     assert payoffs.shape == (2, 2, 2)

@@ -22,7 +22,7 @@ SPECIFIED = {
     *("Thm 5", "Cor. 6", "Thm 7", "Lemma 10", "Cor. 11", "Cor. 12", "Thm 13"),
     *("Lemma 17", "Lemma 19", "Prop. 20", "Prop. 21", "Fig. 3.1", "Table 3.1", "Table 3.2"),
 }
-"""Every numbered statement of the specification's chapters on theory, and of what was to be built of them."""
+"""Every numbered statement of the specification's chapters on theory."""
 
 KIND = r"Eqs?\.|Thms?|Cors?\.|Lemmas?|Props?\.|Figs?\.|Tables?|section"
 NUMBER = r"\d+(?:\.\d+)*"
@@ -30,7 +30,7 @@ MARKER = re.compile(rf"\(((?:(?:{KIND}) {NUMBER}(?:, {NUMBER})*(?:, )?)+)\)")
 
 
 def numbers(docstring: str) -> Iterator[str]:
-    """Yield what a docstring says, in brackets and before its sections, that it computes."""
+    """Yield the numbers of equations in the brackets of a docstring, before its sections."""
     text = " ".join(docstring.split("\n\nParameters\n")[0].split())
     for marker in MARKER.findall(text):
         kind = ""
@@ -42,7 +42,7 @@ def numbers(docstring: str) -> Iterator[str]:
 
 
 def documented(name: str) -> dict[str, object]:
-    """Return what a module defines itself, methods included, by qualified name."""
+    """Return the functions and methods that a module defines, by qualified name."""
     module = importlib.import_module(name)
     found: dict[str, object] = {}
     for thing in vars(module).values():

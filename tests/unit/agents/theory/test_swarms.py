@@ -1,4 +1,4 @@
-"""Utilities of swarms, SUD and WLU against values worked by hand (sections 1.1, 1.2)."""
+"""Utilities of swarms, SUD and WLU compared with values computed by hand (sections 1.1, 1.2)."""
 
 import numpy as np
 import pytest
@@ -36,14 +36,14 @@ def test_utilities_add_up() -> None:
     assert utility_between(U, SWARM_OF).tolist() == [[5, -2, 1], [2, 7, 6], [-1, -6, 0]]
 
 
-def test_zero_sum_between_swarms_is_told_from_what_is_not() -> None:
+def test_zero_sum_between_swarms_is_recognized() -> None:
     assert opponents_utility(3.5) == -3.5
     assert is_zero_sum_between(U, SWARM_OF)
     for player, swarm in ((0, 1), (2, 2), (3, 0)):
         other = np.array(U)
         other[player, swarm] += 1e-3
         assert not is_zero_sum_between(other, SWARM_OF)
-        # What a player has within its swarm is nobody's loss.
+        # Utility within a swarm is no loss of others.
         other = np.array(U)
         other[player, SWARM_OF[player]] += 1.0
         assert is_zero_sum_between(other, SWARM_OF)
@@ -56,7 +56,7 @@ def test_the_difference_of_three_swarms() -> None:
     assert isinstance(swarm_utility_difference([3, 4], 0), int)
 
 
-def test_differences_of_two_swarms_always_cancel_and_of_three_in_general_do_not() -> None:
+def test_differences_cancel_for_two_swarms_but_not_for_three() -> None:
     assert is_zero_sum_difference([[5.0, 3.0], [2.0, -9.0]])
     assert not is_zero_sum_difference([[4.0, 15.0, -7.0]])
     assert not is_zero_sum_difference([[4.0, 3.0, -7.0], [4.0, 3.0, -6.0]])
@@ -64,15 +64,15 @@ def test_differences_of_two_swarms_always_cancel_and_of_three_in_general_do_not(
     assert not is_zero_sum_difference([[5.0], [3.0]])  # one swarm's is its utility
 
 
-def test_a_dummy_swarm_closes_a_game_of_constant_sum_alone() -> None:
+def test_a_dummy_swarm_makes_only_constant_sum_games_zero_sum() -> None:
     assert dummy_utility([[4.0, 15.0, -7.0], [12.0, 0.0, 0.0]]) == -12.0
     with pytest.raises(InputError, match=r"utilities=\[12.0, 11.0\]: must have the same sum"):
         dummy_utility([[4.0, 15.0, -7.0], [11.0, 0.0, 0.0]])
 
 
-def test_wonderful_life_worked_by_hand() -> None:
-    # Swarm k: ρ and i; swarm m: j. From each other i and ρ have 2 and 3, from j they have 5 and −1.
-    # Without ρ, i would have 4 in place of its 2, and j 6 in place of the 1 that it has from ρ.
+def test_wonderful_life_utility_equals_values_computed_by_hand() -> None:
+    # Swarm k: ρ and i; swarm m: j. i and ρ have 2 and 3 from each other, 5 and −1 from j.
+    # Without ρ, i has 4 instead of 2, and j has 6 instead of the 1 from ρ.
     u_i, u_rho, others_intra = (2.0, 5.0), (3.0, -1.0), 0.0
     own_intra, own_inter = u_i[0] + u_rho[0], u_i[1] + u_rho[1]
     sud = sud_by_parts(own_intra, others_intra, own_inter)

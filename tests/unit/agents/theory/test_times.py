@@ -1,4 +1,4 @@
-"""Time as utility, and what of it a robot can estimate, against values worked by hand (sections 1.3, 1.4)."""
+"""Time as utility and its estimates, compared with values computed by hand (sections 1.3, 1.4)."""
 
 import pytest
 
@@ -62,7 +62,7 @@ def test_absence_and_presence() -> None:
 
 
 def test_the_wlu_of_times_has_the_corrected_sign() -> None:
-    # (3 + 2 · 2) · (28 − 6) − (4 + 7) + (2 · 8 + 7 − 14); the minus that is printed would give 134.
+    # (3 + 2 · 2) · (28 − 6) − (4 + 7) + (2 · 8 + 7 − 14); the minus of the source would give 134.
     assert approximate_wlu(OWN, MATES, OPPONENTS) == pytest.approx(154.0 - 11.0 + 9.0)
     assert approximate_wlu(OWN, MATES, []) == pytest.approx(66.0 - 11.0)
     assert approximate_wlu(OWN, [], []) == 0.0

@@ -1,4 +1,4 @@
-"""Classes in users' own files: found by a text, refused with one line that says where the mistake is."""
+"""Loading of user-defined classes, and errors with file and line."""
 
 import sys
 from pathlib import Path
@@ -16,12 +16,12 @@ from kswarms.scenarios.runs.outcome import RunError
 from kswarms.scenarios.runs.play import play
 from kswarms.scenarios.runs.run import Run, digest
 
-# Not imported: it is found as users name it.
+# Not imported: loaded by its reference.
 OWN = (Path(__file__).parents[3] / "helpers" / "users_own.py").read_text()
 
 
 @pytest.fixture(autouse=True)
-def _in_a_directory_with_a_users_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def _change_to_a_directory_with_user_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("own.py").write_text(OWN)
 
@@ -56,7 +56,7 @@ GOOD = [
 
 
 @pytest.mark.parametrize("text", GOOD)
-def test_a_class_in_a_users_file_plays(text: str) -> None:
+def test_a_user_defined_class_plays(text: str) -> None:
     model = play_out(text)
     assert model.ended == "time"
     assert model.results()[1]["policy"] == text
@@ -64,7 +64,7 @@ def test_a_class_in_a_users_file_plays(text: str) -> None:
 
 
 def at(code: str) -> str:
-    """Return how an error names the line of the user's file that holds some code."""
+    """Return the place of some code of the file, as in an error."""
     return f"(own.py, line {next(k for k, line in enumerate(OWN.splitlines(), 1) if code in line)})"
 
 
@@ -110,7 +110,7 @@ WRONG = [
 
 
 @pytest.mark.parametrize(("text", "begin", "end"), WRONG, ids=[row[0] for row in WRONG])
-def test_a_mistake_is_told_when_the_game_is_described(text: str, begin: str, end: str) -> None:
+def test_errors_surface_when_the_game_is_described(text: str, begin: str, end: str) -> None:
     with pytest.raises(InputError) as caught:
         game(text)
     line = str(caught.value).removeprefix("swarms.1.")
@@ -129,13 +129,13 @@ def test_a_mistake_is_told_when_the_game_is_described(text: str, begin: str, end
         ("raise ValueError\n", r"importing bad\.py raises ValueError \(bad\.py, line 1\)$"),
     ],
 )
-def test_a_file_that_cannot_be_imported_is_told_with_its_line(code: str, message: str) -> None:
+def test_errors_of_an_import_have_a_line(code: str, message: str) -> None:
     Path("bad.py").write_text(code)
     with pytest.raises(InputError, match=message):
         game("bad.py:X")
 
 
-def test_a_file_is_executed_once_and_anew_when_its_content_changes() -> None:
+def test_a_file_is_executed_once_for_each_content() -> None:
     counting = OWN + "\nwith open('executed', 'a') as log:\n    log.write('x')\n"
     Path("own.py").write_text(counting)
     first, again = (load_class("policy", "own.py:Cautious") for _ in range(2))
@@ -147,7 +147,7 @@ def test_a_file_is_executed_once_and_anew_when_its_content_changes() -> None:
     assert Path("executed").read_text() == "xx"
 
 
-def test_two_files_of_one_name_in_two_directories_are_two(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_files_of_the_same_name_in_two_directories_are_distinguished(monkeypatch: pytest.MonkeyPatch) -> None:
     here = load_class("policy", "own.py:Cautious")
     Path("below").mkdir()
     Path("below/own.py").write_text(OWN)
@@ -171,7 +171,7 @@ def test_a_module_of_a_package_in_the_current_directory_plays(monkeypatch: pytes
     assert [path.name for path in sources("policy", "my_single_1:Cautious")] == ["my_single_1.py"]
 
 
-def test_a_learner_that_offers_a_snapshot_is_recorded_and_can_be_saved() -> None:
+def test_a_learner_with_a_snapshot_is_recorded_and_saved() -> None:
     model = play_out("own.py:Tally")
     assert policy_rows(model) == [
         {"swarm": 2, "opponent": 1, "action": action, "share": share, "attack_share": 1.0}
@@ -190,7 +190,7 @@ def rows_of(model: GameModel) -> list[dict[str, object]]:
     return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
-def test_a_learner_without_a_snapshot_leaves_no_row() -> None:
+def test_a_learner_without_a_snapshot_has_no_rows() -> None:
     model = play_out("own.py:Frozen")
     assert policy_rows(model) == []
     assert [snapshot_of(robot.policy) for robot in model.robots] == [[]] * 6
@@ -207,7 +207,7 @@ def test_learning_ends_with_the_learning_phase() -> None:
     assert [snapshot_of(robot.policy) for robot in model.members[1]] == before
 
 
-def test_the_files_of_a_policy_are_those_that_its_texts_name() -> None:
+def test_files_of_a_policy() -> None:
     Path("data.json").write_text("{}")
     assert files("avoid") == files("flight") == files("learner(reward='wlu', rule='ucb')") == []
     assert files("own.py:Anything(file='data.json')") == [Path("own.py"), Path("data.json")]
@@ -215,7 +215,7 @@ def test_the_files_of_a_policy_are_those_that_its_texts_name() -> None:
     assert files("learner(reward='own.py:Flat', rule='./own.py:First(arm=1)')") == [Path("own.py")] * 2
 
 
-def test_the_digest_covers_the_code() -> None:
+def test_the_digest_of_a_run_covers_user_code() -> None:
     described = game("own.py:Cautious")
     before = digest(described, 0)
     assert digest(described, 0) == before
@@ -227,7 +227,7 @@ def test_the_digest_covers_the_code() -> None:
 
 
 @pytest.mark.parametrize("policy", ["own.py:Cautious", "learner(rule='own.py:First')"])
-def test_a_run_whose_code_was_changed_since_it_was_named_is_not_played(policy: str) -> None:
+def test_a_run_is_refused_after_its_code_has_changed(policy: str) -> None:
     described = game(policy)
     run = Run(digest(described, 0), described, 0, (("mine", ""),))
     assert len(play(run).swarms) == 2

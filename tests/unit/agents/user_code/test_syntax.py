@@ -1,4 +1,4 @@
-"""Names with arguments: what is read, what is refused (one line: field, value, what is allowed)."""
+"""Parsing of names with arguments, and its errors."""
 
 import keyword
 
@@ -33,12 +33,12 @@ ARGUMENTS = st.dictionaries(
         ),
     ],
 )
-def test_what_is_read(text: str, expected: Call) -> None:
+def test_valid_texts_are_parsed(text: str, expected: Call) -> None:
     assert parse_call("policy", text) == expected
 
 
 @given(ARGUMENTS)
-def test_whatever_is_written_as_python_is_read_back(arguments: dict[str, object]) -> None:
+def test_literals_are_parsed_back(arguments: dict[str, object]) -> None:
     arguments = {name: value for name, value in arguments.items() if not keyword.iskeyword(name)}
     text = f"name({', '.join(f'{name}={value!r}' for name, value in arguments.items())})"
     assert parse_call("policy", text) == Call("name", arguments)
@@ -71,7 +71,7 @@ def test_whatever_is_written_as_python_is_read_back(arguments: dict[str, object]
         "wlu(delta=" + "-" * 5000 + "1)",
     ],
 )
-def test_what_is_refused(text: str) -> None:
+def test_invalid_texts_are_refused(text: str) -> None:
     with pytest.raises(InputError, match=r"must be name or name\(key=value, …\) with plain values") as caught:
         parse_call("reward", text)
     assert (caught.value.field, caught.value.value) == ("reward", text)
@@ -79,7 +79,7 @@ def test_what_is_refused(text: str) -> None:
 
 
 @pytest.mark.parametrize("value", [5, None, 0.5, ["wlu"], {"wlu": 1}])
-def test_what_is_no_text_is_refused(value: object) -> None:
+def test_other_types_are_refused(value: object) -> None:
     with pytest.raises(InputError) as caught:
         build("reward", value, REWARDS, Reward)  # type: ignore[arg-type]
     assert caught.value.field == "reward"
@@ -91,7 +91,7 @@ def test_build() -> None:
     assert build("rule", "periodic-random(every=20)", RULES, Rule) == PeriodicRandom(every=20)
 
 
-def test_what_is_unknown_is_named_with_what_is_known() -> None:
+def test_errors_of_unknown_names_list_the_known_names() -> None:
     with pytest.raises(InputError) as caught:
         build("reward", "wlo(delta=0.1)", REWARDS, Reward)
     known = "wlu, individual, single-swarm, or a class as my_file.py:MyClass"
@@ -107,13 +107,13 @@ def test_what_is_unknown_is_named_with_what_is_known() -> None:
         ("periodic-random(every=0)", "rule.every=0: must be greater than or equal to 1"),
     ],
 )
-def test_an_argument_that_is_not_allowed_is_named_with_its_path(text: str, line: str) -> None:
+def test_invalid_arguments_are_named_with_their_path(text: str, line: str) -> None:
     with pytest.raises(InputError) as caught:
         build("rule", text, RULES, Rule)
     assert str(caught.value) == line
 
 
-def test_an_argument_called_self_is_unknown_like_any_other() -> None:
+def test_an_argument_named_self_is_unknown() -> None:
     with pytest.raises(InputError):
         build("rule", "ucb(self=1)", RULES, Rule)
 
