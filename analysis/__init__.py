@@ -1,4 +1,4 @@
-"""What result files say: reading them, figures of them, and comparison with published numbers.
+"""Analysis of results: tables, measures, figures, films, findings and the report.
 
-Nothing here simulates. pandas, matplotlib and seaborn are imported in this package alone.
+This package reads results and does not simulate. Only this package imports pandas, matplotlib and seaborn.
 """

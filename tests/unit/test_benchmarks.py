@@ -14,7 +14,6 @@ from benchmarks.games import Plan, WorkError, count_work, time_game
 from kswarms.agents.common.columns import names
 from kswarms.analysis.results.runs import read_policies
 from kswarms.model.game_model import GameModel
-from kswarms.model.kernel.percepts import CONFLICT, WALL
 from kswarms.scenarios.catalogue import CATALOGUE
 
 TINY = Plan("avoid,attack", 6, 30.0)
@@ -56,17 +55,9 @@ def test_counting_an_incomplete_game_is_an_error(monkeypatch: pytest.MonkeyPatch
         count_work(TINY, 1)
 
 
-def test_a_game_without_conflicts_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    decide = GameModel._decide
-
-    def blind(model: GameModel, now: int, size: int) -> None:
-        kinds = model._kernel.events["kind"][:size]
-        kinds[kinds == CONFLICT] = WALL
-        decide(model, now, size)
-
-    monkeypatch.setattr(GameModel, "_decide", blind)
+def test_a_game_without_conflicts_is_an_error() -> None:
     with pytest.raises(WorkError, match="too few events"):
-        count_work(TINY, 1)
+        count_work(Plan("avoid", 1, 30.0), 1)
 
 
 def test_the_bare_loop_processes_the_given_number_of_timeouts(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,4 @@
-"""The drawings of a game's forms: what stands in them, and that it can be read."""
+"""Drawings of the forms of a game: content and legibility."""
 
 from itertools import combinations
 
@@ -17,8 +17,8 @@ WITHIN = NormalForm(ACTIONS, ACTIONS, np.array([[5.6, 5.6], [4.6, 4.6]]), np.arr
 BETWEEN = zero_sum(ACTIONS, ACTIONS, np.array([[0.0, 12.34], [-12.34, 0.0]]))
 
 
-def places(figure: Figure) -> dict[Text, Bbox]:
-    """Return every text that is drawn, and where it stands (pixels)."""
+def text_boxes(figure: Figure) -> dict[Text, Bbox]:
+    """Return all drawn texts and their boxes (pixels)."""
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     texts = [text for axes in figure.axes for text in (*axes.texts, axes.title) if text.get_text()]
@@ -26,11 +26,11 @@ def places(figure: Figure) -> dict[Text, Bbox]:
     return {text: text.get_window_extent(canvas.get_renderer()) for text in texts}
 
 
-def shown(figure: Figure) -> list[str]:
-    return [text.get_text() for text in places(figure)]
+def drawn_texts(figure: Figure) -> list[str]:
+    return [text.get_text() for text in text_boxes(figure)]
 
 
-def lines(figure: Figure, style: str) -> int:
+def count_lines(figure: Figure, style: str) -> int:
     return sum(line.get_linestyle() == style for line in figure.axes[0].lines)
 
 
@@ -41,20 +41,20 @@ def graph(swarms: int) -> object:
 
 def test_the_tree_shows_moves_chances_payoffs_and_information_sets() -> None:
     figure = draw_extensive_form(extensive_form({1: WITHIN, 2: BETWEEN}, {1: 0.25, 2: 0.75}))
-    texts = shown(figure)
+    texts = drawn_texts(figure)
     assert {"S1, p = 0.25", "S2, p = 0.75", "payoffs (own, met)"} <= set(texts)
     assert texts.count("flight") == texts.count("fight") == 2 + 4
     payoffs = [text for text in texts if text.startswith("(")]
     assert payoffs[4:] == ["(0, 0)", "(12.3, -12.3)", "(-12.3, 12.3)", "(0, 0)"]
-    assert lines(figure, "--") == 2  # one information set with two nodes for each swarm
-    assert lines(figure, "-") == 2 + 4 + 8
+    assert count_lines(figure, "--") == 2  # one information set with two nodes for each swarm
+    assert count_lines(figure, "-") == 2 + 4 + 8
 
 
-def test_the_graph_tells_zero_sum_from_general_sum() -> None:
+def test_the_graph_distinguishes_zero_sum_and_general_sum_games() -> None:
     figure = draw_polymatrix(graph(3))
-    assert lines(figure, "-") == 3
-    assert lines(figure, "--") == 3
-    texts = shown(figure)
+    assert count_lines(figure, "-") == 3
+    assert count_lines(figure, "--") == 3
+    texts = drawn_texts(figure)
     assert {"S1", "S2", "S3", "zero-sum", "general-sum", "within S2", "S1 (rows), S3 (columns)"} <= set(texts)
     matrix = [
         "           flight          fight",
@@ -70,13 +70,13 @@ def tree(swarms: int) -> object:
 
 
 @pytest.mark.parametrize("swarms", [1, 2, 4, 6])
-def test_texts_stand_inside_and_apart(swarms: int) -> None:
+def test_texts_are_inside_the_figure_and_do_not_overlap(swarms: int) -> None:
     for figure in (draw_extensive_form(tree(swarms)), draw_polymatrix(graph(swarms))):
         _check(figure)
 
 
 def _check(figure: Figure) -> None:
-    texts = places(figure)
+    texts = text_boxes(figure)
     assert len(texts) > 2
     for text, box in texts.items():
         assert Bbox.intersection(box, figure.bbox).bounds == pytest.approx(box.bounds), text.get_text()
