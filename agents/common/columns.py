@@ -8,6 +8,116 @@ from typing import Final, NamedTuple
 SCHEMA_VERSION: Final = 1
 """Stored in the metadata of each Parquet file, and raised when a column changes. Files of 0.1.0 have none."""
 
+_SCHEMA: Final = """
+runs: one row for each run, swarm and curve that contains the run
+run             | text    |               | digest of the game, its seed and the version
+scenario        | text    |               | id of the scenario
+condition       | text    |               | name of the curve, empty if the scenario has only one
+n               | integer |               | robots in all
+seed            | integer |               | seed of the game
+swarm           | integer |               | number of the swarm
+size            | integer |               | robots of the swarm in the measured game
+policy          | text    |               | policy, with its arguments
+pucks           | integer |               | pucks deposited
+sud             | integer | pucks         | Swarm Utility Difference: own pucks less all others' (Eq. 3.7)
+t_a_intra       | real    | robot-seconds | T(a) of conflicts within the swarm
+t_a_inter       | real    | robot-seconds | T(a) of conflicts with other swarms
+t_p             | real    | robot-seconds | T(p)
+conflicts_intra | integer |               | conflicts begun within the swarm
+conflicts_inter | integer |               | conflicts begun with other swarms
+duration        | real    | s             | length of the measured game
+ended           | text    |               | end of the game: `time`, `pucks` or `cap`
+
+policies: one row for each run, learning swarm, swarm learned about, action and curve
+run          | text    |  | digest of the game, its seed and the version
+scenario     | text    |  | id of the scenario
+condition    | text    |  | name of the curve, empty if the scenario has only one
+n            | integer |  | robots in all
+seed         | integer |  | seed of the game
+swarm        | integer |  | number of the swarm
+opponent     | integer |  | number of the swarm learned about
+action       | text    |  | name of the action
+share        | real    |  | share of the swarm's robots for which the action is best
+attack_share | real    |  | share of them whose best action leads towards the opponent
+
+conflicts: one row for each conflict that a robot began
+run            | text                    |   | digest of the game, its seed and the version
+phase          | text                    |   | `learning` or `game`
+robot          | integer                 |   | number of the robot
+swarm          | integer                 |   | number of the swarm
+opponent       | integer                 |   | number of the robot met
+opponent_swarm | integer                 |   | number of its swarm
+start          | real                    | s | time since the beginning, learning included
+x              | real                    | m | position
+y              | real                    | m | position
+action         | text                    |   | name of the action
+t_a            | real                    | s | T(a), time in the action
+t_p            | real                    | s | T(p), time in the program until the next conflict
+active         | integer                 |   | active sensors, n′
+seen           | list of list of integer |   | robots that the sensors read, a list for each swarm
+reward         | real                    | s | reward R, NaN if nothing is learned
+q              | real                    |   | Q of the action after it (Eq. 4.15), NaN if nothing is learned
+
+robots: one row for each robot at the end of its game
+run    | text        |   | digest of the game, its seed and the version
+robot  | integer     |   | number of the robot
+swarm  | integer     |   | number of the swarm
+policy | text        |   | policy, with its arguments
+pucks  | integer     |   | pucks deposited
+t_a    | real        | s | time in actions
+t_p    | real        | s | time in the program
+arms   | list of arm |   | what the robot learned
+
+trajectory: one row for each sample and robot
+run     | text    |     | digest of the game, its seed and the version
+time    | real    | s   | time of the sample
+robot   | integer |     | number of the robot
+x       | real    | m   | position
+y       | real    | m   | position
+heading | real    | rad | direction, counter-clockwise from the x-axis
+state   | text    |     | `P` (program) or `A` (action)
+puck    | boolean |     | whether the robot carries a puck
+
+contribution: one row for each game and robot, with the game without the robot
+scenario              | text    |               | id of the scenario
+condition             | text    |               | name of the curve, empty if the scenario has only one
+absent_from           | text    |               | phases without the robot: `game`, or `learning` and game
+run                   | text    |               | digest of the game with the robot
+run_without           | text    |               | digest of the game without it
+policy                | text    |               | policy, with its arguments
+n                     | integer |               | robots in all
+seed                  | integer |               | seed of the game
+robot                 | integer |               | number of the robot
+swarm                 | integer |               | number of the swarm
+sud                   | integer | pucks         | SUD of the robot's swarm
+sud_without           | integer | pucks         | the same without the robot
+time_sud              | real    | s             | SUD of its swarm in time-utility
+time_sud_without      | real    | s             | the same without the robot
+reward                | real    | s             | sum of the robot's rewards R in the measured game
+reward_time           | real    | s             | sum of T(a) + T(p) of the same conflicts
+duration              | real    | s             | length of the measured game
+duration_without      | real    | s             | the same without the robot
+mates_t_a             | real    | robot-seconds | T(a) of the robot's mates
+mates_t_a_without     | real    | robot-seconds | the same without the robot
+mates_t_a_met         | real    | robot-seconds | T(a) of its mates in conflicts with it
+mates_t_p             | real    | robot-seconds | T(p) of its mates
+mates_t_p_without     | real    | robot-seconds | the same without the robot
+opponents_t_a         | real    | robot-seconds | T(a) of the robot's opponents
+opponents_t_a_without | real    | robot-seconds | the same without the robot
+opponents_t_a_met     | real    | robot-seconds | T(a) of its opponents in conflicts with it
+opponents_t_p         | real    | robot-seconds | T(p) of its opponents
+opponents_t_p_without | real    | robot-seconds | the same without the robot
+
+arms: the elements of the column `arms` of the table of robots
+opponent | integer |   | number of the opponent's swarm
+action   | text    |   | name of the action
+reward   | real    | s | sum of the rewards, discounted if the selection rule discounts
+time     | real    | s | sum of T(a) + T(p), likewise discounted
+count    | real    |   | number of conflicts, likewise discounted
+q        | real    |   | Q = reward / time (Eq. 4.15), NaN if never tried
+"""
+"""Name, kind, unit and meaning of each column, by table."""
+
 
 class Column(NamedTuple):
     """A column: name, kind, unit (empty if none), meaning in Markdown.
@@ -21,119 +131,23 @@ class Column(NamedTuple):
     meaning: str
 
 
-_RUN: Final = Column("run", "text", "", "digest of the game, its seed and the version")
-_CURVE: Final = (
-    Column("scenario", "text", "", "id of the scenario"),
-    Column("condition", "text", "", "name of the curve, empty if the scenario has only one"),
-)
-_N: Final = Column("n", "integer", "", "robots in all")
-_SEED: Final = Column("seed", "integer", "", "seed of the game")
-_ROBOT: Final = Column("robot", "integer", "", "number of the robot")
-_SWARM: Final = Column("swarm", "integer", "", "number of the swarm")
-_POLICY: Final = Column("policy", "text", "", "policy, with its arguments")
-_PUCKS: Final = Column("pucks", "integer", "", "pucks deposited")
-_ACTION: Final = Column("action", "text", "", "name of the action")
-_POSITION: Final = (Column("x", "real", "m", "position"), Column("y", "real", "m", "position"))
+def _parse(table: str) -> tuple[str, str, tuple[Column, ...]]:
+    """Return the name, the description and the columns of a table of the schema."""
+    heading, *rows = table.strip().splitlines()
+    name, _, description = heading.partition(": ")
+    return name, description, tuple(Column(*map(str.strip, row.split("|"))) for row in rows)
 
-ARM: Final = (
-    Column("opponent", "integer", "", "number of the opponent's swarm"),
-    _ACTION,
-    Column("reward", "real", "s", "sum of the rewards, discounted if the selection rule discounts"),
-    Column("time", "real", "s", "sum of T(a) + T(p), likewise discounted"),
-    Column("count", "real", "", "number of conflicts, likewise discounted"),
-    Column("q", "real", "", "Q = reward / time (Eq. 4.15), NaN if never tried"),
-)
-"""What a robot learned of an action against a swarm: an element of the column ``arms``."""
 
-TABLES: Final = {
-    "runs": (
-        *(_RUN, *_CURVE, _N, _SEED, _SWARM),
-        Column("size", "integer", "", "robots of the swarm in the measured game"),
-        _POLICY,
-        _PUCKS,
-        Column("sud", "integer", "pucks", "Swarm Utility Difference: own pucks less all others' (Eq. 3.7)"),
-        Column("t_a_intra", "real", "robot-seconds", "T(a) of conflicts within the swarm"),
-        Column("t_a_inter", "real", "robot-seconds", "T(a) of conflicts with other swarms"),
-        Column("t_p", "real", "robot-seconds", "T(p)"),
-        Column("conflicts_intra", "integer", "", "conflicts begun within the swarm"),
-        Column("conflicts_inter", "integer", "", "conflicts begun with other swarms"),
-        Column("duration", "real", "s", "length of the measured game"),
-        Column("ended", "text", "", "end of the game: `time`, `pucks` or `cap`"),
-    ),
-    "policies": (
-        *(_RUN, *_CURVE, _N, _SEED, _SWARM),
-        Column("opponent", "integer", "", "number of the swarm learned about"),
-        _ACTION,
-        Column("share", "real", "", "share of the swarm's robots for which the action is best"),
-        Column("attack_share", "real", "", "share of them whose best action leads towards the opponent"),
-    ),
-    "conflicts": (
-        _RUN,
-        Column("phase", "text", "", "`learning` or `game`"),
-        *(_ROBOT, _SWARM),
-        Column("opponent", "integer", "", "number of the robot met"),
-        Column("opponent_swarm", "integer", "", "number of its swarm"),
-        Column("start", "real", "s", "time since the beginning, learning included"),
-        *(*_POSITION, _ACTION),
-        Column("t_a", "real", "s", "T(a), time in the action"),
-        Column("t_p", "real", "s", "T(p), time in the program until the next conflict"),
-        Column("active", "integer", "", "active sensors, n′"),
-        Column("seen", "list of list of integer", "", "robots that the sensors read, a list for each swarm"),
-        Column("reward", "real", "s", "reward R, NaN if nothing is learned"),
-        Column("q", "real", "", "Q of the action after the reward (Eq. 4.15), NaN if nothing is learned"),
-    ),
-    "robots": (
-        *(_RUN, _ROBOT, _SWARM, _POLICY, _PUCKS),
-        Column("t_a", "real", "s", "time in actions"),
-        Column("t_p", "real", "s", "time in the program"),
-        Column("arms", "list of arm", "", "what the robot learned"),
-    ),
-    "trajectory": (
-        *(_RUN, Column("time", "real", "s", "time of the sample"), _ROBOT, *_POSITION),
-        Column("heading", "real", "rad", "direction, counter-clockwise from the x-axis"),
-        Column("state", "text", "", "`P` (program) or `A` (action)"),
-        Column("puck", "boolean", "", "whether the robot carries a puck"),
-    ),
-    "contribution": (
-        *_CURVE,
-        Column("absent_from", "text", "", "what the robot is absent from: `learning` (and game) or `game`"),
-        Column("run", "text", "", "digest of the game with the robot"),
-        Column("run_without", "text", "", "digest of the game without it"),
-        *(_POLICY, _N, _SEED, _ROBOT, _SWARM),
-        Column("sud", "integer", "pucks", "SUD of the robot's swarm"),
-        Column("sud_without", "integer", "pucks", "the same without the robot"),
-        Column("time_sud", "real", "s", "SUD of its swarm in time-utility"),
-        Column("time_sud_without", "real", "s", "the same without the robot"),
-        Column("reward", "real", "s", "sum of the robot's rewards R in the measured game"),
-        Column("reward_time", "real", "s", "sum of T(a) + T(p) of the same conflicts"),
-        Column("duration", "real", "s", "length of the measured game"),
-        Column("duration_without", "real", "s", "the same without the robot"),
-        *(
-            Column(f"{others}_{name}", "real", "robot-seconds", meaning.format(others))
-            for others in ("mates", "opponents")
-            for name, meaning in (
-                ("t_a", "T(a) of the robot's {}"),
-                ("t_a_without", "the same without the robot"),
-                ("t_a_met", "T(a) of its {} in conflicts with it"),
-                ("t_p", "T(p) of the robot's {}"),
-                ("t_p_without", "the same without the robot"),
-            )
-        ),
-    ),
-}
+_TABLES: Final = [_parse(table) for table in _SCHEMA.split("\n\n")]
+
+TABLES: Final = {name: columns for name, _, columns in _TABLES if name != "arms"}
 """Columns of each table, in order."""
+
+ARM: Final = _TABLES[-1][-1]
+"""Columns of an element of ``arms``: what a robot learned of an action against a swarm."""
 
 RECORDED_TABLES: Final = ("conflicts", "robots", "trajectory")
 """Tables that a game records on request."""
-
-_ROWS: Final = {
-    "runs": "One row for each run and swarm, repeated for each curve that has the run.",
-    "policies": "One row for each run, learning swarm, swarm learned about and action, repeated likewise.",
-    "conflicts": "One row for each conflict that a robot began.",
-    "robots": "One row for each robot at the end of its game.",
-    "trajectory": "One row for each sample and robot.",
-    "contribution": "One row for each game and robot, with the game without the robot.",
-}
 
 
 def names(table: str, *kinds: str) -> tuple[str, ...]:
@@ -143,11 +157,11 @@ def names(table: str, *kinds: str) -> tuple[str, ...]:
 
 def data_dictionary() -> str:
     """Return the columns of all tables as Markdown, a heading of level 3 and a table each."""
-    parts = [(f"`{name}.parquet`", text, TABLES[name]) for name, text in _ROWS.items()]
-    parts.append(("`arms`", "Each element of the column `arms` of `robots.parquet`.", ARM))
     lines = []
-    for title, text, table in parts:
-        lines += [f"### {title}", "", text, "", "| column | kind | unit | meaning |", "|---|---|---|---|"]
-        lines += [f"| `{c.name}` | {c.kind} | {c.unit} | {c.meaning} |" for c in table]
+    for name, description, columns in _TABLES:
+        title = f"{name}.parquet" if name in TABLES else name
+        lines += [f"### `{title}`", "", f"{description[0].upper()}{description[1:]}.", ""]
+        lines += ["| column | kind | unit | meaning |", "|---|---|---|---|"]
+        lines += [f"| `{c.name}` | {c.kind} | {c.unit} | {c.meaning} |" for c in columns]
         lines.append("")
     return "\n".join(lines)
