@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from kswarms.agents.streams import Purpose
     from kswarms.analysis.figures.files import save
     from kswarms.analysis.figures.over_n import figure_of
-    from kswarms.analysis.findings import FINDINGS, Finding, judge, judge_all
+    from kswarms.analysis.findings import FINDINGS, Finding, judge, judge_all, read_findings
     from kswarms.analysis.results.records import read_conflicts
     from kswarms.analysis.results.runs import Results, read_policies, read_results, read_runs
     from kswarms.model.description.game import Game, Swarm
@@ -48,7 +48,7 @@ _MODULES: Final = {
     "agents.streams": ("Purpose",),
     "analysis.figures.files": ("save",),
     "analysis.figures.over_n": ("figure_of",),
-    "analysis.findings": ("FINDINGS", "Finding", "judge", "judge_all"),
+    "analysis.findings": ("FINDINGS", "Finding", "judge", "judge_all", "read_findings"),
     "analysis.results.records": ("read_conflicts",),
     "analysis.results.runs": ("Results", "read_policies", "read_results", "read_runs"),
     "model.description.game": ("Game", "Swarm"),
@@ -96,6 +96,7 @@ __all__ = [
     "judge_all",
     "make_policy",
     "read_conflicts",
+    "read_findings",
     "read_policies",
     "read_results",
     "read_runs",

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from importlib.resources import files
 from typing import Final
 
-from kswarms.analysis.findings.finding import Finding, load, parse
+from kswarms.analysis.findings.finding import Finding, parse, read_findings
 from kswarms.analysis.findings.judging import judge
 from kswarms.analysis.findings.verdicts import FAILS, HOLDS, NO_DATA, UNDECIDED, Verdict
 from kswarms.analysis.results.runs import Results
@@ -19,7 +19,7 @@ __all__ = [
     "Verdict",
     "judge",
     "judge_all",
-    "load",
+    "read_findings",
 ]
 
 FINDINGS: Final = parse(files(__name__).joinpath("thesis.toml").read_text(encoding="utf-8"), "thesis.toml")

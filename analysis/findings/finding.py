@@ -53,7 +53,7 @@ class _File(Checked):
         return self
 
 
-def load(path: Path) -> tuple[Finding, ...]:
+def read_findings(path: Path) -> tuple[Finding, ...]:
     """Read findings from a TOML file with an array of tables ``findings``.
 
     Raises
@@ -69,7 +69,7 @@ def load(path: Path) -> tuple[Finding, ...]:
 
 
 def parse(text: str, name: str) -> tuple[Finding, ...]:
-    """Read findings from TOML text; errors as for `load` refer to it as `name`."""
+    """Read findings from TOML text; errors as for `read_findings` refer to it as `name`."""
     try:
         content = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:

@@ -34,13 +34,13 @@ def report(
 
     Example: kswarms report results --out report.html
     """
-    from kswarms.analysis.findings import FINDINGS, load
+    from kswarms.analysis.findings import FINDINGS, read_findings
     from kswarms.analysis.report import Planned, build_report
 
     path = out or directory / "report.html"
     if out is not None and not path.parent.is_dir():
         raise InputError("out", str(path), "must be a file in a directory that exists")
-    own = load(findings) if findings is not None else ()
+    own = read_findings(findings) if findings is not None else ()
     for finding in own:
         if finding.id in {each.id for each in FINDINGS}:
             raise InputError("findings.id", finding.id, "must not be that of a finding of the thesis")

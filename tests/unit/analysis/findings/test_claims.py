@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.findings import FINDINGS, HOLDS, judge, load
+from kswarms.analysis.findings import FINDINGS, HOLDS, judge, read_findings
 from kswarms.analysis.findings.claims import Compare
 from kswarms.analysis.findings.data import sample
 from kswarms.analysis.findings.quantity import UNITS, Quantity
@@ -45,7 +45,7 @@ def write(tmp_path: Path) -> Any:
 
 
 def test_a_finding_of_a_users_own(write: Any) -> None:
-    (finding,) = load(write(HEAD + COMPARE + "margin = 2\n"))
+    (finding,) = read_findings(write(HEAD + COMPARE + "margin = 2\n"))
     assert (finding.id, finding.source, finding.confidence) == ("mine", "", 0.95)
     assert finding.scenarios == ("a", "b")
     assert finding.claim == Compare(
@@ -118,14 +118,14 @@ def test_a_finding_can_be_changed() -> None:
 )
 def test_what_is_no_finding(write: Any, text: str, complaint: str) -> None:
     with pytest.raises(InputError, match=complaint):
-        load(write(text))
+        read_findings(write(text))
 
 
 def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "latin.toml").write_bytes(b'id = "\xe9"')
     for name in ("absent.toml", "latin.toml", "."):
         with pytest.raises(InputError, match="must be a readable TOML file"):
-            load(tmp_path / name)
+            read_findings(tmp_path / name)
 
 
 def test_the_thesiss_findings_are_about_what_the_catalogue_has() -> None:
@@ -192,6 +192,6 @@ def test_a_finding_holds_where_it_was_stated(write: Any) -> None:
         for scenario, pucks in (("a", 20), ("b", 10))
         for seed in range(8)
     ]
-    (finding,) = load(write(HEAD + COMPARE))
+    (finding,) = read_findings(write(HEAD + COMPARE))
     verdict = judge(finding, Results(pd.DataFrame(rows)))
     assert (verdict.verdict, verdict.effect, verdict.unit) == (HOLDS, 10.0, "pucks")
