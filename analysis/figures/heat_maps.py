@@ -1,5 +1,7 @@
 """Heat maps of the places where conflicts begin."""
 
+import math
+
 import numpy as np
 import pandas as pd
 from matplotlib import colormaps
@@ -25,7 +27,8 @@ def heat_maps(conflicts: pd.DataFrame, title: str = "", places: Places | None = 
     title : str
         Heading.
     places : Places, optional
-        Arena, whose stations and bases are drawn into the maps.
+        Arena, whose stations and bases are drawn into the maps. Without it, the maps are as large as needed
+        and at least 2 × 2 m.
 
     Returns
     -------
@@ -39,7 +42,8 @@ def heat_maps(conflicts: pd.DataFrame, title: str = "", places: Places | None = 
     """
     if conflicts.empty:
         raise InputError("conflicts", "no rows", "must hold at least one conflict")
-    half = places.half if places is not None else 1.0
+    farthest = float(conflicts[["x", "y"]].abs().to_numpy().max())
+    half = places.half if places is not None else max(1.0, math.ceil(2 * farthest) / 2)
     kinds = {f"all: {len(conflicts):,}": conflicts}
     if conflicts["action"].nunique() > 1:
         kinds |= {f"{action}: {len(rows):,}": rows for action, rows in conflicts.groupby("action")}

@@ -130,4 +130,4 @@ def _temporary(path: Path) -> Iterator[Path]:
         with atomic_path(path) as file:
             yield file
     except OSError as error:
-        raise InputError("out", str(path), f"must be a writable file ({error.strerror})") from error
+        raise InputError("out", str(path), f"must be a writable file ({error.strerror or error})") from error

@@ -26,6 +26,13 @@ def test_heat_maps_of_all_and_of_each_action_share_a_scale() -> None:
 def test_heat_map_of_one_action_without_places() -> None:
     panel, _ = heat_maps(PLACED[PLACED["action"] == "flight"].drop(columns="run")).axes
     assert panel.get_title() == "all: 3"
+    assert panel.get_xlim() == (-1.0, 1.0)
     assert list(panel.texts) == []
     with pytest.raises(InputError, match="must hold at least one conflict"):
         heat_maps(PLACED.head(0))
+
+
+def test_maps_without_places_show_all_conflicts_of_a_large_arena() -> None:
+    panel, *_ = heat_maps(PLACED.assign(x=-3.2)).axes
+    assert panel.get_xlim() == panel.get_ylim() == (-3.5, 3.5)
+    assert panel.images[0].get_array().sum() == 2.0
