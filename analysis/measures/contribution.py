@@ -1,33 +1,33 @@
-"""What robots contributed to their swarm, beside the rewards that they computed (docs/contribution.md).
+"""Contributions of robots to their swarm, compared with their rewards (docs/contribution.md).
 
-From the rows of `contribution.parquet`: a robot's contribution to a game is the SUD of its swarm less that of
-the same game without it. Rows of one question are compared: one scenario, condition, N and way to be absent.
+The contribution of a robot to a game is the SUD of its swarm minus the SUD in the same game without the
+robot. The functions take rows of `contribution.parquet` of one scenario, condition, N and kind of absence.
 """
 
-import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from scipy import stats
 
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.theory.swarms import swarm_utility_difference
 from kswarms.analysis.measures.utilities import COLUMNS, robot_utilities, utilities_by_swarm
+from kswarms.analysis.statistics.curves import spearman
 from kswarms.analysis.statistics.intervals import Interval, bootstrap_interval
 from kswarms.analysis.statistics.means import with_intervals
 
 Floats = NDArray[np.float64]
-FEWEST_ROBOTS: Final = 3
-"""Of which ranks are compared: two are in the same order or they are not."""
+
+_MIN_ROBOTS: Final = 3
+"""Minimum number of robots for a rank correlation."""
 
 _QUESTION: Final = ["scenario", "condition", "n", "absent_from"]
 MEASURES: Final = {"pucks": "pucks", "time": "s"}
-"""The SUD whose change is a contribution, and its unit."""
+"""Kinds of SUD and their units."""
 QUANTITIES: Final = (*MEASURES, "reward", "reward_rate")
-"""What is averaged of each robot: its contribution, its reward in a game (s), and that for each second."""
+"""Quantities of a robot: contributions, reward in a game (s), reward per second."""
 OTHERS: Final = ("mates", "opponents")
 
 
@@ -37,13 +37,13 @@ def time_sud(conflicts: Mapping[str, Sequence[Any]], swarms: int) -> list[float]
     Parameters
     ----------
     conflicts : mapping of str to sequence
-        The conflicts of one game, columns as in ``conflicts.parquet``; those of its learning do not count.
+        Conflicts of one game, columns as in ``conflicts.parquet``; the learning phase does not count.
     swarms : int
         Number of swarms.
     """
     table = pd.DataFrame({name: conflicts[name] for name in COLUMNS})
     table = table[table["phase"] == "game"]
-    utilities = [0.0] * swarms  # of a swarm that met nobody, too
+    utilities = [0.0] * swarms  # a swarm without conflicts has no row
     if not table.empty:
         of_swarms = utilities_by_swarm(robot_utilities(table))
         for swarm, utility in zip(of_swarms["swarm"], of_swarms["utility"], strict=True):
@@ -52,25 +52,25 @@ def time_sud(conflicts: Mapping[str, Sequence[Any]], swarms: int) -> list[float]
 
 
 def of_question(rows: pd.DataFrame, **question: object) -> pd.DataFrame:
-    """Return the rows of one question, with the contributions.
+    """Return the rows of one scenario, condition, N and kind of absence, with the contributions.
 
     Parameters
     ----------
     rows : pandas.DataFrame
         Rows of `contribution.parquet`.
     **question
-        Values of `scenario`, `condition`, `n`, `absent_from`, as far as `rows` has several.
+        Values of `scenario`, `condition`, `n`, `absent_from`; required for columns with several values.
 
     Returns
     -------
     pandas.DataFrame
-        Besides the columns of `rows`: `pucks` and `time` (s), the contribution to SUD; `reward_rate`, the
-        reward for each second of conflicts and of the program after them (Eq. 4.15), NaN without any.
+        The columns of `rows`; `pucks` and `time` (s), the contributions to SUD; `reward_rate`, the reward per
+        second of conflicts and following program time (Eq. 4.15), NaN without conflicts.
 
     Raises
     ------
     InputError
-        If none remain, or those of several questions.
+        A value does not occur, or one of several must be given.
     """
     for name, value in question.items():
         if value not in set(rows[name]):
@@ -89,7 +89,7 @@ def of_question(rows: pd.DataFrame, **question: object) -> pd.DataFrame:
 
 
 def measures_of(rows: pd.DataFrame) -> list[str]:
-    """Return those of `MEASURES` that were measured."""
+    """Return the keys of `MEASURES` that have values."""
     return [measure for measure in MEASURES if rows[measure].notna().any()]
 
 
@@ -130,18 +130,18 @@ def rank_correlations(rows: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        One row for each `swarm` of three robots at least and each `measure`, with Spearman's ρ and its 95 %
+        One row for each `swarm` of at least three robots and each `measure`, with Spearman's ρ and its 95 %
         interval:
 
         * ``robots``, ``…_low``, ``…_high``: of the robots' means over the seeds;
         * ``games``, ``…_low``, ``…_high``: of the robots in one game, averaged over the games.
 
-        NaN where all robots have the same value; the bounds are NaN for fewer than six seeds.
+        NaN if all robots have the same value; the bounds are NaN for fewer than six seeds.
     """
     table = []
     for swarm, of_swarm in rows.groupby("swarm"):
         reward = _by_seed(of_swarm, "reward")
-        for measure in measures_of(rows) if reward.shape[1] >= FEWEST_ROBOTS else ():
+        for measure in measures_of(rows) if reward.shape[1] >= _MIN_ROBOTS else ():
             contribution = _by_seed(of_swarm, measure)
             both = np.stack([reward, contribution], axis=-1)
             in_games = spearman(reward, contribution)
@@ -154,25 +154,11 @@ def rank_correlations(rows: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(table, columns=["swarm", "measure", *columns])
 
 
-def spearman(first: Floats, second: Floats) -> Floats:
-    """Return Spearman's ρ along the last axis, NaN where one of both is constant.
-
-    Parameters
-    ----------
-    first, second : ndarray of float64, shape (…, robots)
-    """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", stats.ConstantInputWarning)
-        ranks = (stats.rankdata(values, axis=-1) for values in (first, second))
-        correlation: Floats = np.asarray(stats.pearsonr(*ranks, axis=-1).statistic)
-    return correlation
-
-
 def assumption(rows: pd.DataFrame) -> pd.DataFrame:
-    """Say what became of the time that others spent in conflicts with a robot once it was gone.
+    """Return how much of the time in conflicts with a robot becomes program time if the robot is absent.
 
-    The source assumes all of it to be program time (Eqs. 4.9 to 4.11). Times without the robot are scaled to
-    the duration of the game with it, which is the same unless a number of pucks ends the game.
+    The source assumes that all of it does (Eqs. 4.9 to 4.11). Times without the robot are scaled to the
+    duration of the game with it; the durations differ only if a number of pucks ends the game.
 
     Parameters
     ----------
@@ -182,13 +168,13 @@ def assumption(rows: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        One row for each `swarm` of the robot and each of `OTHERS` that there are, `others`; seconds in a
-        game, summed over these others, averaged over robots and seeds:
+        One row for each `swarm` of the robot and kind of `others` (`OTHERS`); seconds per game, summed over
+        the others and averaged over robots and seeds:
 
-        * `t_a`, `t_a_without`, `t_p`, `t_p_without`: T(a) and T(p) with the robot and without it;
+        * `t_a`, `t_a_without`, `t_p`, `t_p_without`: T(a) and T(p) with and without the robot;
         * `met`: T(a) in the others' conflicts with the robot;
-        * `share`, `share_low`, `share_high`: (T(a) − T(a) without) / met, which is 1 if the assumption holds
-          and 0 if other conflicts take the place of those, and its 95 % interval; NaN if nobody met it.
+        * `share`, `share_low`, `share_high`: (T(a) − T(a) without) / met with its 95 % interval: 1 if the
+          assumption holds, 0 if other conflicts replace these; NaN if no robot met it.
     """
     scale = rows["duration"] / rows["duration_without"]
     table = []
@@ -204,7 +190,7 @@ def assumption(rows: pd.DataFrame) -> pd.DataFrame:
                 }
             )
             if (times["t_a"] + times["t_p"] == 0).all():
-                continue  # nobody there
+                continue  # there are no such robots
             of_seeds = times.groupby(of_swarm["seed"]).mean().to_numpy()
             share, low, high = _finite(bootstrap_interval(of_seeds, _share))
             found: dict[str, Any] = {"swarm": swarm, "others": others, **times.mean()}

@@ -39,7 +39,9 @@ def meeting_network(conflicts: pd.DataFrame) -> nx.Graph:
     if "run" in conflicts and conflicts["run"].nunique() > 1:
         raise InputError("conflicts", f"{conflicts['run'].nunique()} runs", "must be of one game")
     network = nx.Graph()
-    swarms = swarms_of(conflicts)
+    robots = np.concatenate([conflicts["robot"], conflicts["opponent"]]).tolist()
+    of_robots = np.concatenate([conflicts["swarm"], conflicts["opponent_swarm"]]).tolist()
+    swarms = dict(zip(robots, of_robots, strict=True))
     for robot, swarm in sorted(swarms.items()):
         network.add_node(robot, swarm=swarm)
     pairs = np.sort(conflicts[["robot", "opponent"]].to_numpy(), axis=1)
@@ -52,13 +54,6 @@ def meeting_network(conflicts: pd.DataFrame) -> nx.Graph:
         kind = "intra" if swarms[first] == swarms[second] else "inter"
         network.add_edge(int(first), int(second), meetings=int(meetings), time=float(time), kind=kind)
     return network
-
-
-def swarms_of(conflicts: pd.DataFrame) -> dict[int, int]:
-    """Return the swarm, from 1, of each robot that began a conflict or was met in one."""
-    robots = np.concatenate([conflicts["robot"], conflicts["opponent"]])
-    swarms = np.concatenate([conflicts["swarm"], conflicts["opponent_swarm"]])
-    return {int(robot): int(swarm) for robot, swarm in zip(robots, swarms, strict=True)}
 
 
 def describe_network(network: nx.Graph) -> dict[str, float]:

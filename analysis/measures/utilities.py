@@ -1,29 +1,27 @@
 """Utilities measured on recorded games: chapter 3 with the time-utilities of chapter 4 (section 1.3).
 
     robots = robot_utilities(conflicts, alpha=1.0, beta=1.0)   # u_i^m, U_i, W_i of every robot
-    swarms = utilities_by_swarm(robots)                           # U_Sk, SUD of every swarm
+    swarms = utilities_by_swarm(robots)                        # U_Sk, SUD of every swarm
 
-`conflicts` has the columns of ``conflicts.parquet``: `kswarms.analysis.results.records.read_conflicts` reads
-it, and ``pandas.DataFrame(model.tables()["conflicts"])`` of a game just played will do; the column ``run``
-may be missing.
+`conflicts` has the columns of ``conflicts.parquet``, with ``seen``: `read_conflicts(directory, seen=True)` or
+``pandas.DataFrame(model.tables()["conflicts"])``. The column ``run`` is optional.
 
-How a game is read. A conflict that robot i began is an interaction with every robot that its active sensors
-read at the start (column ``seen``): n_k of its own swarm, n_m of each other one. It lasts from its start to
-the start of i's next conflict: T(a_i) and T(p_i) are its own, T(a_j) and T(p_j) are the seconds that robot j
-spent in A and in P meanwhile, whether or not it noticed i. Then
+A conflict that robot i began is an interaction with all robots that its active sensors read at the start
+(column ``seen``): n_k of its own swarm, n_m of each other swarm. It lasts until i begins its next conflict.
+T(a_i) and T(p_i) are i's own times; T(a_j) and T(p_j) are the seconds that robot j spent in A and in P during
+that interval, whether or not j noticed i. Then
 
-* u_i^k is Eq. 4.2, and what the own robots seen have of it is in their own conflicts;
-* u_i^m is Eq. 4.5, and each opponent j that was seen has the opposite of its part, Eq. 4.3, by Eq. 3.1. So
-  what two swarms have from each other sums to zero. Where both noticed, there are two conflicts, which both
-  count;
+* u_i^k is Eq. 4.2; the robots of its own swarm have their utility from their own conflicts;
+* u_i^m is Eq. 4.5; each opponent j that was seen has the opposite of its part, Eq. 4.3, by Eq. 3.1. So the
+  utilities of two swarms from each other sum to zero. If both robots noticed, both conflicts count;
 * W_i is Eq. 4.14, summed over the conflicts that i began.
 
 α and β are positive numbers: one for all, one for each swarm (``{1: …, 2: …}``), or one for each pair of
-swarm and opponent's swarm (``{(1, 1): …, (1, 2): …, …}``). Robot i takes those of its conflict, for itself
-and the swarm of the robot that it met; each other robot those for its own swarm and that of i.
+swarm and opponent's swarm (``{(1, 1): …, (1, 2): …, …}``). For robot i the pair is its own swarm and that of
+the robot it met; for every other robot, its own swarm and that of i.
 
-A robot that neither began a conflict nor was seen in one has no row; its utilities are 0. The rest of an
-action that was under way when the measured game began is in no conflict of it, and counts as program.
+A robot that neither began a conflict nor was seen in one has no row; its utilities are 0. An action that
+began before the measured game belongs to no conflict of it; its rest counts as program.
 """
 
 import math
@@ -48,7 +46,7 @@ Weights = float | Mapping[int, float] | Mapping[tuple[int, int], float]
 """α or β: for all, by swarm, or by (swarm, opponent's swarm); swarms from 1."""
 
 COLUMNS: Final = ("phase", "robot", "swarm", "opponent_swarm", "start", "seen", "t_a", "t_p")
-"""What is read of a table of conflicts."""
+"""Required columns of a table of conflicts."""
 
 
 def robot_utilities(
@@ -59,24 +57,24 @@ def robot_utilities(
     Parameters
     ----------
     conflicts : pandas.DataFrame
-        Conflicts of one game or, told apart by ``run``, of several.
+        Conflicts of one game, or of several with the column ``run``.
     alpha, beta : float, or mapping of int or of (int, int) to float
         Weights of the seconds in A and in P.
     phase : {'game', 'learning'}
-        Which conflicts are measured.
+        Phase of the game.
 
     Returns
     -------
     pandas.DataFrame
-        One row for each robot that began a conflict or was seen in one, sorted by number: ``run`` (if it was
-        given), ``robot``, ``swarm`` (from 1), ``conflicts`` that it began, ``u_1`` … ``u_K`` (u_i^m),
-        ``utility`` (U_i) and ``wlu`` (W_i), in weighted seconds. Where the games of a table have different
-        numbers of swarms, K is the greatest, and u_m against a swarm that a game has not is 0.
+        One row for each robot that began a conflict or was seen in one, sorted by number: ``run`` (if given),
+        ``robot``, ``swarm`` (from 1), ``conflicts`` that it began, ``u_1`` … ``u_K`` (u_i^m), ``utility``
+        (U_i) and ``wlu`` (W_i), in weighted seconds. K is the largest number of swarms of any game; u_m is 0
+        if a game has no swarm m.
 
     Raises
     ------
     InputError
-        If a column is missing, there is no conflict of the phase, or a weight is missing or not positive.
+        A column is missing, the phase has no conflicts, or a weight is missing or not positive.
     """
     rows = _measured(conflicts, phase)
     if "run" not in rows.columns:
@@ -98,8 +96,8 @@ def utilities_by_swarm(robots: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        One row for each swarm that has a robot here: ``run`` (if it was given), ``swarm``, ``utility`` (U_Sk)
-        and ``sud`` (SUD_k), in weighted seconds.
+        One row for each swarm of `robots`: ``run`` (if given), ``swarm``, ``utility`` (U_Sk) and ``sud``
+        (SUD_k), in weighted seconds.
     """
     games = robots.groupby("run", sort=False) if "run" in robots.columns else [(None, robots)]
     parts = []
@@ -117,14 +115,14 @@ def utilities_by_swarm(robots: pd.DataFrame) -> pd.DataFrame:
 
 
 def _measured(conflicts: pd.DataFrame, phase: str) -> pd.DataFrame:
-    """Return the conflicts of a phase, checked."""
+    """Return the conflicts of a phase."""
     missing = [name for name in COLUMNS if name not in conflicts.columns]
     if missing:
         raise InputError("conflicts", missing, "must have these columns too")
     rows = conflicts[conflicts["phase"] == phase]
     if rows.empty:
-        known = ", ".join(map(str, dict.fromkeys(conflicts["phase"]))) or "of none"
-        raise InputError("phase", phase, f"must be one of which there are conflicts: {known}")
+        known = ", ".join(map(str, dict.fromkeys(conflicts["phase"]))) or "none"
+        raise InputError("phase", phase, f"must be a phase with conflicts: {known}")
     return rows
 
 
@@ -181,10 +179,10 @@ def _spent_by_others(
     t_a = np.zeros(len(pairs))
     for j, own in rows.reset_index(drop=True).groupby("robot"):
         order = own.sort_values("start").index
-        # Seconds in A up to each instant: they rise within actions and stand still between them.
+        # Seconds in A up to each instant: rising within actions, constant between them.
         instants = np.column_stack([start[order], start[order] + action[order]]).ravel()
         total = np.cumsum(np.column_stack([np.zeros(len(order)), action[order]]).ravel())
-        # An action's end may be the dust of a float later than the start of the next.
+        # Rounding can put the end of an action after the start of the next one.
         instants = np.maximum.accumulate(instants)
         of_j = robot == j
         until_end, until_start = (np.interp(t[conflict[of_j]], instants, total) for t in (end, start))

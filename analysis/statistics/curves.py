@@ -106,18 +106,21 @@ def rank_correlation_with_n(
     InputError
         There are fewer than two densities, no seeds, or shapes that do not match.
     """
-    _, values = _samples(densities, samples)
-    ranks = stats.rankdata(densities)
-    ranks -= ranks.mean()
+    n, values = _samples(densities, samples)
+    return bootstrap_interval(
+        values, lambda means: np.nan_to_num(spearman(means, n)), confidence, smooth=False
+    )
 
-    def correlation(means: Values) -> Values:
-        of_curve = stats.rankdata(means, axis=-1)
-        of_curve -= of_curve.mean(axis=-1, keepdims=True)
-        length = np.sqrt((ranks @ ranks) * (of_curve**2).sum(axis=-1))
-        result: Values = np.divide(of_curve @ ranks, length, out=np.zeros_like(length), where=length > 0)
-        return result
 
-    return bootstrap_interval(values, correlation, confidence, smooth=False)
+def spearman(first: Values, second: Values) -> Values:
+    """Return Spearman's rank correlation along the last axis, NaN where either is constant."""
+    ranks, others = (stats.rankdata(values, axis=-1) for values in (first, second))
+    ranks -= ranks.mean(axis=-1, keepdims=True)
+    others -= others.mean(axis=-1, keepdims=True)
+    length = np.sqrt((ranks**2).sum(axis=-1) * (others**2).sum(axis=-1))
+    products: Values = (ranks * others).sum(axis=-1)
+    correlation: Values = np.divide(products, length, out=np.full_like(length, np.nan), where=length > 0)
+    return correlation
 
 
 def _last_rise(n: Values, curves: Values) -> Values:

@@ -1,7 +1,7 @@
-"""The scenarios `argos-*` beside the same games in ARGoS 3: pucks, time in conflict, and whether they agree.
+"""Comparison of the scenarios `argos-*` with the same games in ARGoS 3: pucks and time in conflict.
 
-A mean score agrees within 20 %, or within 1.5 pucks, or when the 95 % Welch interval of the difference holds
-0; a mean share of time in conflict, T(a) / (T(a) + T(p)), agrees within 0.06.
+A mean score agrees within 20 %, within 1.5 pucks, or if the 95 % Welch interval of the difference contains 0.
+A mean share of time in conflict, T(a) / (T(a) + T(p)), agrees within 0.06.
 """
 
 import math
@@ -20,7 +20,7 @@ SCORE_TOLERANCE = 0.2
 PUCK_TOLERANCE = 1.5
 
 _ROW = ["scenario", "n", "swarm"]
-# Means of counts over 10 and 20 seeds fall on the tolerances exactly: rounding must not decide.
+# Absorbs rounding errors: means of counts over 10 and 20 seeds can equal a tolerance.
 _ROUNDING = 1e-9
 
 
@@ -30,20 +30,20 @@ def against_argos(runs: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     runs : pandas.DataFrame
-        Rows of `runs.parquet`; other scenarios, and densities that ARGoS was not run at, are left out.
+        Rows of `runs.parquet`; scenarios and densities without ARGoS games are left out.
 
     Returns
     -------
     pandas.DataFrame
-        One row for each `scenario` (str), `n`, `swarm` (int64) that both have, sorted by these, with
+        One row for each common `scenario` (str), `n`, `swarm` (int64), sorted by these, with
 
-        * `seeds_ours`, `seeds_theirs` (int64): games;
-        * `score_ours`, `score_theirs`, `score_difference` (float64, pucks): means, and ours - theirs;
-        * `score_low`, `score_high` (float64, pucks): the 95 % Welch interval of the difference, NaN where
-          one of the two has a single game;
-        * `score_relative` (float64): difference / theirs, NaN where theirs is 0;
+        * `seeds_ours`, `seeds_theirs` (int64): numbers of games;
+        * `score_ours`, `score_theirs`, `score_difference` (float64, pucks): means, and ours − theirs;
+        * `score_low`, `score_high` (float64, pucks): 95 % Welch interval of the difference, NaN for a single
+          game on either side;
+        * `score_relative` (float64): difference / theirs, NaN if theirs is 0;
         * `share_ours`, `share_theirs`, `share_difference` (float64): mean shares of time in conflict;
-        * `score_fits`, `share_fits` (bool): whether they agree by the rule above.
+        * `score_fits`, `share_fits` (bool): whether they agree.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def _compare(ours: pd.DataFrame, theirs: pd.DataFrame) -> dict[str, Any]:
 
 
 def argos_table(frame: pd.DataFrame) -> TextTable:
-    """Print what `against_argos` returns, a line for each row."""
+    """Return the rows of `against_argos` as text."""
     header = [
         *("scenario", "N", "swarm", "pucks", "ARGoS", "difference (95 % interval)", "relative", "fits"),
         *("time in conflict", "ARGoS", "difference", "fits"),
@@ -99,32 +99,17 @@ def argos_table(frame: pd.DataFrame) -> TextTable:
     for row in frame.to_dict("records"):
         relative = NONE if pd.isna(row["score_relative"]) else f"{100 * row['score_relative']:+.0f} %"
         difference = with_interval(row["score_difference"], row["score_low"], row["score_high"], "+.1f")
-        rows.append(
-            [
-                str(row["scenario"]),
-                str(row["n"]),
-                f"S{row['swarm']}",
-                f"{row['score_ours']:.1f}",
-                f"{row['score_theirs']:.1f}",
-                difference,
-                relative,
-                _verdict(row["score_fits"]),
-                f"{row['share_ours']:.3f}",
-                f"{row['share_theirs']:.3f}",
-                f"{row['share_difference']:+.3f}",
-                _verdict(row["share_fits"]),
-            ]
-        )
+        scores = [f"{row[name]:.1f}" for name in ("score_ours", "score_theirs")]
+        shares = [f"{row['share_ours']:.3f}", f"{row['share_theirs']:.3f}", f"{row['share_difference']:+.3f}"]
+        fits = ["yes" if row[name] else "no" for name in ("score_fits", "share_fits")]
+        point = [row["scenario"], str(row["n"]), f"S{row['swarm']}"]
+        rows.append([*point, *scores, difference, relative, fits[0], *shares, fits[1]])
     return TextTable(header, rows, "")
 
 
 def markdown_table(frame: pd.DataFrame) -> str:
-    """Write what `against_argos` returns as a Markdown table, a line for each row; misfits are bold."""
+    """Return the rows of `against_argos` in Markdown, with misfits in bold."""
     return argos_table(frame).to_markdown().replace("| no |", "| **no** |")
-
-
-def _verdict(fits: bool) -> str:
-    return "yes" if fits else "no"
 
 
 def _own_games(runs: pd.DataFrame) -> pd.DataFrame:
@@ -133,7 +118,7 @@ def _own_games(runs: pd.DataFrame) -> pd.DataFrame:
 
 
 def _argos_games() -> pd.DataFrame:
-    """Bring the ARGoS games into the form of ours: one row for each game and swarm."""
+    """Return the ARGoS games in the form of `_own_games`: one row for each game and swarm."""
     games = argos_fixed_policies()
     swarms = []
     for swarm in (1, 2):
@@ -145,7 +130,7 @@ def _argos_games() -> pd.DataFrame:
                     "n": games["n"],
                     "swarm": swarm,
                     "score": games[f"score{swarm}"],
-                    "share": in_conflict / (in_conflict + games[f"tp{swarm}"]),
+                    "share": share_of_time(in_conflict, in_conflict, games[f"tp{swarm}"]),
                 }
             )
         )

@@ -1,4 +1,4 @@
-"""Tables of what swarms learned, from the rows of `policies.parquet`, beside the published numbers.
+"""Tables of learned policies, with the published numbers, from the rows of `policies.parquet`.
 
 A cell is the percentage of a swarm's robots that learned to attack another swarm, or to flee within their
 own: the mean over the seeds, with its 95 % interval.
@@ -18,14 +18,14 @@ _CELL = [*_COLUMN, "n"]
 
 
 def learned_shares(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataFrame:
-    """Say how many robots learned to attack others and to flee within, for each curve and density.
+    """Return the percentage of robots that learned to attack others or to flee within, by curve and density.
 
     Parameters
     ----------
     policies : pandas.DataFrame
         Rows of `policies.parquet`, as `kswarms.analysis.results.runs.read_policies` returns them.
     scenarios : sequence of str
-        Ids of the scenarios wanted.
+        Ids of scenarios; those without learners are left out.
 
     Returns
     -------
@@ -33,23 +33,23 @@ def learned_shares(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataF
         One row for each `scenario`, `condition` (str), `swarm`, `opponent`, `n` (int64), in the order of
         `scenarios`, then sorted, with
 
-        * `learned` (str): ``attack``, of another swarm, or ``flight within``, of the own;
-        * `seeds` (int64): games;
+        * `learned` (str): ``attack`` (another swarm) or ``flight within`` (the own swarm);
+        * `seeds` (int64): number of games;
         * `measured` (float64, %): mean over the seeds;
         * `low`, `high` (float64, %): its 95 % interval, NaN for fewer than six seeds;
-        * `published` (float64, %): the source's number, NaN where it gives none;
+        * `published` (float64, %): the source's number, NaN if there is none;
         * `error` (float64, percentage points): measured − published.
 
     Raises
     ------
     InputError
-        No swarm of these scenarios learned.
+        None of the scenarios has learners.
     """
     rows = policies[policies["scenario"].isin(scenarios)]
     if rows.empty:
         known = ", ".join(sorted(set(policies["scenario"])))
         raise InputError("scenarios", list(scenarios), f"must include one with learners: {known}")
-    # The share of attack stands on the row of each action.
+    # The row of each action has the share of attack.
     rows = rows.drop_duplicates([*_CELL, "seed"])
     within = rows["opponent"] == rows["swarm"]
     rows = rows.assign(
@@ -67,30 +67,15 @@ def learned_shares(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataF
 
 
 def mean_absolute_error(cells: pd.DataFrame) -> float:
-    """Return the mean of |measured − published| over the cells that have both, NaN if none has.
-
-    Parameters
-    ----------
-    cells : pandas.DataFrame
-        As `learned_shares` returns them.
-    """
+    """Return the mean of |measured − published| over the published cells, NaN if there is none."""
     return float(cells["error"].abs().mean())
 
 
 def learned_table(cells: pd.DataFrame) -> TextTable:
-    """Put cells into the form of the source's tables: a row for each N, a column for each curve.
+    """Return the cells of `learned_shares` in the form of the source's tables: a row for each N.
 
-    Parameters
-    ----------
-    cells : pandas.DataFrame
-        As `learned_shares` returns them.
-
-    Returns
-    -------
-    TextTable
-        Published and measured percentages side by side, measured alone where nothing was published; the
-        caption gives the mean absolute errors. Columns are named by scenario, condition and what was
-        learned, as far as these differ: in the source's tables one swarm learns, about one other.
+    Each curve has a column of measured percentages, after its published ones if there are any. Columns are
+    named as in `named_columns`. The caption has the mean absolute errors.
     """
     densities = sorted(set(cells["n"]))
     header, columns, errors = ["N"], [[str(n) for n in densities]], []
@@ -107,20 +92,14 @@ def learned_table(cells: pd.DataFrame) -> TextTable:
 
 
 def named_columns(cells: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
-    """Return the columns of a table, each under what tells it from the others.
-
-    Parameters
-    ----------
-    cells : pandas.DataFrame
-        As `learned_shares` returns them.
-    """
-    telling = [part for part in ("scenario", "condition", "learned") if cells[part].nunique() > 1]
+    """Return each column of a table with its name: scenario, condition and action, as far as these differ."""
+    differing = [part for part in ("scenario", "condition", "learned") if cells[part].nunique() > 1]
     opponents = cells.groupby(["scenario", "condition", "swarm", "learned"])["opponent"].nunique()
     columns = []
     for _, column in cells.groupby(_COLUMN, sort=False):
         first = column.iloc[0]
-        words = [str(first[part]) for part in telling or ["learned"]]
-        if opponents.max() > 1:  # of three swarms
+        words = [str(first[part]) for part in differing or ["learned"]]
+        if opponents.max() > 1:
             words.append(f"S{first['opponent']}")
         columns.append((", ".join(words), column))
     return columns

@@ -1,4 +1,4 @@
-"""The numbers of a scenario's figure as a table: means over the seeds and intervals, a row for each N."""
+"""Tables of the means over the seeds behind the figure of a scenario."""
 
 import pandas as pd
 
@@ -28,9 +28,9 @@ def scores(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        One row for each `quantity` (str: ``pucks``, ``sud`` or a kind of time share), `curve` (str: its name
-        in the figure's legend) and `n` (int64), with `seeds` (int64), `mean`, `low`, `high` (float64): mean
-        over the seeds and its 95 % interval, NaN for fewer than six seeds.
+        One row for each `quantity` (str: ``pucks``, ``sud`` or a kind of time share), `curve` (str: name in
+        the legend) and `n` (int64), with `seeds` (int64), `mean`, `low`, `high` (float64): the mean over the
+        seeds and its 95 % interval, NaN for fewer than six seeds.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def scores(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
 
 
 def scores_table(frame: pd.DataFrame) -> TextTable:
-    """Print what `scores` returns: a row for each N, a column for each curve and quantity."""
+    """Return `scores` as text: a row for each N, a column for each curve and quantity."""
     densities = sorted(set(frame["n"]))
     several = frame["quantity"].nunique() > 1
     header, columns = ["N"], [[str(n) for n in densities]]

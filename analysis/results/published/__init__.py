@@ -1,4 +1,4 @@
-"""Numbers of others that the simulator is compared with, as package data.
+"""Published numbers, as package data, that the simulator is compared with.
 
 `table-6.1.csv` and `table-6.2.csv` are tables of the thesis; `argos_fixed_policies.csv` holds games of the
 same controller in ARGoS 3 (time-limited, 600 s, ten seeds at each density).
@@ -27,7 +27,7 @@ def table_6_1() -> pd.DataFrame:
 
 
 def table_6_2() -> pd.DataFrame:
-    """Table 6.2: what the learner of both bandits (Fig. 6.8) learned, for each density.
+    """Table 6.2: robots that learned with both bandits (Fig. 6.8), for each density.
 
     Returns
     -------
@@ -39,14 +39,14 @@ def table_6_2() -> pd.DataFrame:
 
 
 def learned_percentages() -> pd.DataFrame:
-    """Tables 6.1 and 6.2 in one form: what the robots of the learning swarm learned, in percent.
+    """Tables 6.1 and 6.2 in one form: percentages of the learning swarm.
 
     Returns
     -------
     pandas.DataFrame
-        Forty rows. `scenario` (str): the figure that the table is about; `learned` (str): ``attack`` the
-        other swarm, or ``flight within`` the own; `n` (int64): robots in all; `published` (float64): percent
-        of the learning swarm's robots.
+        Forty rows. `scenario` (str): figure of the table; `learned` (str): ``attack`` (the other swarm) or
+        ``flight within`` (the own swarm); `n` (int64): robots in all; `published` (float64): percent of the
+        learning swarm's robots.
     """
     attack, within = "attack", "flight within"
     columns = [

@@ -18,11 +18,11 @@ from kswarms.analysis.measures.contribution import (
     measures_of,
     of_question,
     rank_correlations,
-    spearman,
     time_sud,
 )
 from kswarms.analysis.measures.utilities import robot_utilities, utilities_by_swarm
 from kswarms.analysis.results.records import read_contributions
+from kswarms.analysis.statistics.curves import spearman
 from kswarms.analysis.statistics.intervals import bootstrap_interval
 from kswarms.analysis.tables.contribution import contribution_tables
 

@@ -101,8 +101,8 @@ def test_the_phase_that_is_asked_for_is_measured() -> None:
     ("conflicts", "weights", "message"),
     [
         (table().drop(columns=["seen", "t_p"]), {}, r"=\['seen', 't_p'\]: must have these columns too"),
-        (table(phase="learning"), {}, "phase='game': must be one of which there are conflicts: learning"),
-        (table().iloc[:0], {}, "conflicts: of none"),
+        (table(phase="learning"), {}, "phase='game': must be a phase with conflicts: learning"),
+        (table().iloc[:0], {}, "conflicts: none"),
         (table(), {"alpha": 0.0}, "alpha of swarm 1 against 1=0.0: must be a number > 0"),
         (table(), {"beta": {1: 1.0}}, "beta of swarm 2 against 1=None: must be a number > 0"),
         (table(), {"beta": {1: 1.0, (2, 2): 1.0}}, "beta of swarm 2 against 1=None"),

@@ -121,9 +121,7 @@ def test_verdicts_are_counted_and_marked() -> None:
 
 def test_argos_is_compared_at_common_densities() -> None:
     assert list(argos_parts(runs_of("fig-x"))) == []
-    assert (
-        list(argos_parts(runs_of("argos-avoid-avoid", densities=[50]))) == []
-    )  # not played in ARGoS
+    assert list(argos_parts(runs_of("argos-avoid-avoid", densities=[50]))) == []  # not played in ARGoS
     ((chapter, part),) = argos_parts(runs_of("argos-avoid-avoid", densities=[16]))
     assert chapter == "argos-"
     assert part.text[1].startswith("Scores agree in ")
