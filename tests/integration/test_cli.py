@@ -1,4 +1,4 @@
-"""The command line: what it prints, what it writes, and how it refuses."""
+"""The command line: output, files and errors."""
 
 import subprocess
 import sys
@@ -33,7 +33,7 @@ def test_list_names_every_scenario_and_table(capsys: pytest.CaptureFixture[str])
     assert all(line.endswith(f"  {entry.title}") for entry, line in zip(entries, lines[1:-1], strict=True))
 
 
-def test_list_tells_what_a_scenario_takes_and_counts_shared_runs_once(
+def test_list_prints_the_cost_and_counts_shared_runs_once(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     invoke(["list"])
@@ -47,11 +47,18 @@ def test_list_tells_what_a_scenario_takes_and_counts_shared_runs_once(
     assert 60 * hours + minutes == pytest.approx(sum(run.effort for run in runs) / 60, abs=1)
 
 
-def test_list_starts_fast_since_it_imports_nothing_heavy() -> None:
+@pytest.mark.parametrize(
+    ("command", "modules"),
+    [
+        ("list", "mesa numba pandas pyarrow scipy seaborn simpy"),
+        ("--help", "numpy kswarms.scenarios.catalogue kswarms.scenarios.cli.run"),
+        ("--version", "numpy kswarms.scenarios.catalogue kswarms.scenarios.cli.run"),
+    ],
+)
+def test_list_help_and_version_import_nothing_heavy(command: str, modules: str) -> None:
     code = (
-        "import sys; from kswarms.scenarios.cli import invoke; invoke(['list']); "
-        "heavy = {'mesa', 'numba', 'pandas', 'pyarrow', 'scipy', 'seaborn', 'simpy'}; "
-        "print(*sorted(heavy & set(sys.modules)))"
+        f"import sys; from kswarms.scenarios.cli import invoke; invoke(['{command}']); "
+        f"print(*sorted(set('{modules}'.split()) & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == ""
@@ -63,7 +70,7 @@ def test_show_prints_the_scenario_as_toml(capsys: pytest.CaptureFixture[str]) ->
 
 
 @pytest.mark.parametrize("table_id", TABLES)
-def test_show_of_a_table_prints_the_scenarios_that_it_tabulates(
+def test_show_of_a_table_prints_its_scenarios(
     table_id: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert invoke(["show", table_id]) == 0
@@ -121,7 +128,7 @@ def test_bad_input_is_refused_in_one_line_and_nothing_is_written(
     assert {path.name for path in tmp_path.iterdir()} == {"taken"}
 
 
-def test_a_run_writes_tables_and_tells_what_to_type_next(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_writes_tables_and_prints_the_next_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["run", "fig-6.1c", *QUICK, "--out", "my results", "--record", "robots,conflicts"]) == 0
     assert capsys.readouterr().out.splitlines() == [
         "table:  my results/runs.parquet",
@@ -152,7 +159,7 @@ def test_every_record_has_the_columns_of_its_table() -> None:
     assert set(trajectory["state"]) == {"A", "P"}
 
 
-def test_seeds_and_their_first_are_those_asked_for() -> None:
+def test_seeds_and_first_seed_select_the_seeds() -> None:
     words = ["run", "fig-7.12", "--densities", "13", "--seeds", "2", "--first-seed", "7", "--no-figures"]
     assert invoke([*words, "--jobs", "1"]) == 0
     rows = pq.read_table("results/runs.parquet").to_pylist()
@@ -174,7 +181,7 @@ def test_a_table_is_played_and_printed(capsys: pytest.CaptureFixture[str]) -> No
     assert lines[4:6] == ["", f"table-6.1: {TABLES['table-6.1'].title}"]
     (row,) = (line for line in lines if line.startswith("│"))
     cells = [cell.strip() for cell in row.strip("│").split("│")]
-    assert (cells[0], cells[1], cells[3]) == ("6", "1.6", "1.6")  # N, and what was published
+    assert (cells[0], cells[1], cells[3]) == ("6", "1.6", "1.6")  # N, and published numbers
     runs = pq.read_table("results/runs.parquet").to_pylist()
     assert {(row["scenario"], row["duration"]) for row in runs} == {("fig-6.4a", 600.0), ("fig-6.4b", 600.0)}
     policies = pq.read_table("results/policies.parquet").to_pylist()
@@ -212,7 +219,7 @@ def test_a_table_without_published_numbers_is_printed_and_its_figure_drawn(
 
 
 @pytest.mark.slow
-def test_jobs_and_order_and_portions_do_not_change_a_byte() -> None:
+def test_jobs_order_and_portions_do_not_change_the_tables() -> None:
     words = ["--densities", "6,10", "--seeds", "2", "--no-figures"]
     assert invoke(["run", "fig-6.1c", "fig-6.4a", *words, "--jobs", "1", "--out", "one"]) == 0
     assert invoke(["run", "fig-6.4a", "fig-6.1c", *words, "--jobs", "2", "--out", "two"]) == 0
@@ -226,7 +233,7 @@ def test_jobs_and_order_and_portions_do_not_change_a_byte() -> None:
 
 
 @pytest.mark.slow
-def test_a_figure_is_drawn_of_each_scenario(capsys: pytest.CaptureFixture[str]) -> None:
+def test_each_scenario_has_a_figure(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["run", "fig-6.1a", "fig-6.1b", *QUICK[:-1]]) == 0
     pictures = [f"results/figures/fig-6.1{letter}.png" for letter in "ab"]
     assert capsys.readouterr().out.splitlines() == [
@@ -237,7 +244,7 @@ def test_a_figure_is_drawn_of_each_scenario(capsys: pytest.CaptureFixture[str]) 
     assert all(Path(picture).read_bytes().startswith(b"\x89PNG") for picture in pictures)
 
 
-def test_all_plays_what_the_densities_suit(
+def test_all_plays_the_scenarios_that_the_densities_suit(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     played = []
@@ -270,9 +277,9 @@ def test_a_failing_run_and_a_full_disk_are_reported_and_nothing_is_written(
 
     fail(RunError("run n=6 seed=0 failed: ZeroDivisionError: division by zero", "Traceback: here"))
     assert invoke(["run", "fig-6.1a", *QUICK]) == 1
-    told = capsys.readouterr().err.splitlines()
-    assert told[0] == "Traceback: here"
-    assert told[-1].startswith("kswarms: run n=6 seed=0 failed")
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0] == "Traceback: here"
+    assert lines[-1].startswith("kswarms: run n=6 seed=0 failed")
     fail(OSError(28, "No space left on device"))
     assert invoke(["run", "fig-6.1a", *QUICK]) == 1
     assert capsys.readouterr().err == "kswarms: [Errno 28] No space left on device\n"

@@ -1,4 +1,4 @@
-"""The command line against odd numbers, odd titles and damaged results: one line, and nothing lost."""
+"""The command line with extreme numbers, unusual titles and damaged results."""
 
 import re
 from pathlib import Path
@@ -26,7 +26,7 @@ swarms = [{ policy = "attack" }, { policy = "attack" }]
 
 
 @pytest.mark.parametrize(
-    ("words", "complaint"),
+    ("words", "error"),
     [
         ("run fig-6.1a --seeds 1000001", "seeds=1000001: must be less than or equal to 1000000"),
         (f"run fig-6.1a --densities 6,{10**400}", f"n={10**400}: must be at most 1000000 (fig-6.1a)"),
@@ -45,12 +45,12 @@ swarms = [{ policy = "attack" }, { policy = "attack" }]
         ("conflicts fig-6.1a --n 6 --from 9 --to 5", "to=5.0: must be a number of seconds, at least 9"),
     ],
 )
-def test_a_number_or_path_out_of_range_is_one_line_and_nothing_is_written(
-    words: str, complaint: str, capsys: pytest.CaptureFixture[str]
+def test_an_invalid_number_or_path_is_one_line_and_nothing_is_written(
+    words: str, error: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert invoke(words.split()) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith(f"kswarms: {complaint}")
+    assert line.startswith(f"kswarms: {error}")
     assert not list(Path.cwd().iterdir())
 
 
@@ -95,7 +95,7 @@ def test_every_option_for_numbers_refuses_other_texts(capsys: pytest.CaptureFixt
 
 
 @pytest.mark.parametrize("title", ["$x^{ costs $", "漢字", "../../a/b", "<b>&amp;", "_x"])
-def test_whatever_a_title_says_it_is_drawn_and_reported(
+def test_any_title_is_drawn_and_reported(
     title: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     Path("mine.toml").write_text(SCENARIO.replace("TITLE", title), encoding="utf-8")
@@ -106,7 +106,7 @@ def test_whatever_a_title_says_it_is_drawn_and_reported(
     assert [path.name for path in Path.cwd().iterdir() if path.name not in ("mine.toml", "results")] == []
 
 
-def test_a_film_is_called_by_its_curve_and_stays_in_its_directory() -> None:
+def test_a_film_is_named_by_its_condition_and_stays_in_the_directory() -> None:
     Path("mine.toml").write_text(SCENARIO.replace("TITLE", "../../a/b"))
     assert invoke(["film", "mine.toml", "--sheet", "1", "--to", "1"]) == 0
     assert {path.name for path in Path.cwd().iterdir()} == {"mine.toml", "mine-..-..-a-b-n6-seed0.png"}

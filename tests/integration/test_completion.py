@@ -1,4 +1,4 @@
-"""The shell completes what is typed after ``kswarms``."""
+"""Shell completion of ``kswarms``."""
 
 import os
 import shutil
@@ -15,7 +15,7 @@ from kswarms.scenarios.cli import invoke
 def completed(
     words: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], shell: str = "bash"
 ) -> list[str]:
-    """Return what the shell is offered for the last word."""
+    """Return the completions of the last word."""
     monkeypatch.setenv("_KSWARMS_COMPLETE", f"complete_{shell}")
     monkeypatch.setenv("COMP_WORDS", words)
     monkeypatch.setenv("COMP_CWORD", str(len(words.split(" ")) - 1))
@@ -30,7 +30,7 @@ def completed(
 def test_ids_of_scenarios_and_tables_are_completed(
     command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    tables = [] if command == "contribution" else list(TABLES)  # which takes one scenario
+    tables = [] if command == "contribution" else list(TABLES)  # it takes one scenario
     assert completed(f"kswarms {command} ", monkeypatch, capsys) == [*CATALOGUE, *tables]
     assert completed(f"kswarms {command} fig-6.4", monkeypatch, capsys) == ["fig-6.4a", "fig-6.4b"]
     assert completed(f"kswarms {command} table-7", monkeypatch, capsys) == [
@@ -47,7 +47,7 @@ def test_commands_and_further_ids_are_completed(
     assert completed("kswarms film --sh", monkeypatch, capsys) == ["--sheet"]
 
 
-def test_shells_that_show_it_get_the_title_too(
+def test_shells_that_show_help_get_the_title(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     title = CATALOGUE["fig-6.4b"].title

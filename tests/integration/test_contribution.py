@@ -1,4 +1,4 @@
-"""``kswarms contribution``: what it prints and writes, and how it refuses."""
+"""``kswarms contribution``: output, files and errors."""
 
 from pathlib import Path
 
@@ -12,15 +12,15 @@ pytestmark = pytest.mark.usefixtures("empty_directory")
 FEW = ["--n", "6", "--seeds", "2", "--jobs", "1"]
 
 
-def test_it_writes_a_table_and_a_figure_and_prints_what_was_found(capsys: pytest.CaptureFixture[str]) -> None:
+def test_it_writes_a_table_and_a_figure_and_prints_the_results(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["contribution", "fig-6.1c", *FEW, "--robots", "S2,0", "--first-seed", "3"]) == 0
     out = capsys.readouterr().out
     table, figure = Path("results/contribution.parquet"), Path("results/figures/contribution-fig-6.1c.png")
     assert out.splitlines()[:2] == [f"table:  {table}", f"figure: {figure}"]
     assert figure.read_bytes().startswith(b"\x89PNG")
     rows = pq.read_table(table).to_pylist()
-    asked = [(3, 0), (3, 3), (3, 4), (3, 5), (4, 0), (4, 3), (4, 4), (4, 5)]
-    assert [(row["seed"], row["robot"]) for row in rows] == asked
+    expected = [(3, 0), (3, 3), (3, 4), (3, 5), (4, 0), (4, 3), (4, 4), (4, 5)]
+    assert [(row["seed"], row["robot"]) for row in rows] == expected
     assert {row["absent_from"] for row in rows} == {"learning"}
     assert all(row["time_sud"] == row["time_sud"] != row["time_sud_without"] for row in rows)
     for heading in ("contribution of each robot", "rank correlation", "seconds of the others"):
@@ -30,8 +30,8 @@ def test_it_writes_a_table_and_a_figure_and_prints_what_was_found(capsys: pytest
 
 def test_another_condition_is_kept_beside_the_first() -> None:
     for condition in ("delta=0.25", "random"):
-        asked = ["--condition", condition, "--robots", "5", "--absent-from", "game", "--seeds", "1"]
-        assert invoke(["contribution", "fig-6.12", *FEW, *asked, "--out", "here"]) == 0
+        options = ["--condition", condition, "--robots", "5", "--absent-from", "game", "--seeds", "1"]
+        assert invoke(["contribution", "fig-6.12", *FEW, *options, "--out", "here"]) == 0
     rows = pq.read_table("here/contribution.parquet").to_pylist()
     assert [(row["condition"], row["absent_from"]) for row in rows] == [
         ("delta=0.25", "game"),

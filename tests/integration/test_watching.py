@@ -1,4 +1,4 @@
-"""The commands that show a game: `film`, `conflicts`, and what `explore` refuses."""
+"""The commands that show a game: `film`, `conflicts`, and errors of `explore`."""
 
 import sys
 from pathlib import Path
@@ -29,11 +29,11 @@ def _film(arguments: str) -> int:
     return invoke(["film", *arguments.split()])
 
 
-def test_a_stretch_of_a_game_becomes_a_film(capsys: pytest.CaptureFixture[str]) -> None:
+def test_part_of_a_game_becomes_a_film(capsys: pytest.CaptureFixture[str]) -> None:
     assert _film("fig-6.1c --n 6 --from 10 --to 12 --speed 2 --fps 10 --size 100 --out a.gif") == 0
     assert capsys.readouterr().out == "film: a.gif\n"
     with Image.open("a.gif") as gif:
-        # 2 s at twice the speed, 10 pictures a second, and the last instant.
+        # 2 s at twice the speed, 10 frames per second, and the last instant.
         assert gif.n_frames == 11  # type: ignore[attr-defined]
         assert gif.width == 100
 
@@ -48,7 +48,7 @@ def test_a_film_ends_with_its_game(capsys: pytest.CaptureFixture[str]) -> None:
         assert 1 < gif.n_frames < 20  # type: ignore[attr-defined]
 
 
-def test_a_sheet_has_its_instants_evenly_and_a_name_of_its_own(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_contact_sheet_is_named_by_its_game(capsys: pytest.CaptureFixture[str]) -> None:
     assert (
         _film("fig-7.4 --condition delta=0.1 --n 6 --seed 4 --from -2900 --to -2800 --sheet 3 --size 100")
         == 0
@@ -60,7 +60,7 @@ def test_a_sheet_has_its_instants_evenly_and_a_name_of_its_own(capsys: pytest.Ca
         assert sheet.width == 100
 
 
-def test_a_recorded_run_is_filmed_and_told_again(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_recorded_run_is_filmed_and_its_conflicts_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
     name = _recorded()
     capsys.readouterr()
     assert _film(f"--run {name} results --to 1 --size 64 --out a.gif") == 0
@@ -78,7 +78,7 @@ def test_a_recorded_run_is_filmed_and_told_again(capsys: pytest.CaptureFixture[s
     )
 
 
-def test_conflicts_may_begin_with_an_instant(capsys: pytest.CaptureFixture[str]) -> None:
+def test_conflicts_are_listed_from_an_instant(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["conflicts", "fig-6.1c", "--n", "6", "--from", "300"]) == 0
     lines = capsys.readouterr().out.splitlines()[1:]
     assert min(float(line.split()[0]) for line in lines) >= 300
@@ -94,7 +94,7 @@ class Late:
             raise ZeroDivisionError("met\\ntoo many")
         return self.action
 """
-"""A policy that fails at a late conflict, when the pictures of a film have begun."""
+"""A policy that fails at a late conflict, after the first frames of a film."""
 
 
 @pytest.mark.parametrize(
@@ -106,7 +106,7 @@ class Late:
         "conflicts mine.toml",
     ],
 )
-def test_a_policy_that_fails_is_told_in_a_line_after_its_trace_and_nothing_is_written(
+def test_a_failing_policy_is_reported_with_its_traceback_and_nothing_is_written(
     command: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     if "mp4" in command:
@@ -130,11 +130,11 @@ def test_a_policy_that_fails_is_told_in_a_line_after_its_trace_and_nothing_is_wr
 
 
 @pytest.mark.parametrize("absent_from", ["learning", "game"])
-def test_a_game_without_a_robot_is_filmed_and_told_again(
+def test_a_game_with_an_absent_robot_is_filmed_and_its_conflicts_are_listed(
     absent_from: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    asked = f"contribution fig-6.1c --n 6 --robots 2 --seeds 1 --first-seed 3 --absent-from {absent_from}"
-    assert invoke([*asked.split(), "--jobs", "1"]) == 0
+    command = f"contribution fig-6.1c --n 6 --robots 2 --seeds 1 --first-seed 3 --absent-from {absent_from}"
+    assert invoke([*command.split(), "--jobs", "1"]) == 0
     (row,) = pq.read_table("results/contribution.parquet").to_pylist()
     capsys.readouterr()
     whole, without = (recorded_run(Path("results"), row[name]) for name in ("run", "run_without"))
@@ -142,11 +142,11 @@ def test_a_game_without_a_robot_is_filmed_and_told_again(
     assert (without.seed, without.game.absent, without.labels) == (3, (2,), (("fig-6.1c", ""),))
     assert _film(f"--run {without.digest} results --to 1 --size 64 --out a.gif") == 0
     assert invoke(["conflicts", "--run", without.digest, "results"]) == 0
-    told = capsys.readouterr().out.splitlines()[2:]
-    assert {line.split()[1] for line in told} == set("01345")
+    lines = capsys.readouterr().out.splitlines()[2:]
+    assert {line.split()[1] for line in lines} == set("01345")
 
 
-def test_a_run_that_was_compared_may_be_of_a_scenario_that_is_not_at_hand() -> None:
+def test_a_compared_run_of_an_unknown_scenario_is_refused() -> None:
     game = CATALOGUE["fig-6.1c"].game("", 6)
     row = {"run": digest(game, 0), "run_without": "0123", "seed": 0, "robot": 0, "n": 6}
     labels = (("mine", ""), ("fig-6.1c", "other"), ("fig-6.1c", ""))
@@ -200,7 +200,7 @@ def test_a_run_has_its_own_condition_size_and_seed(capsys: pytest.CaptureFixture
     assert "seed=4: must not be given with a run" in capsys.readouterr().err
 
 
-def test_without_its_extra_explore_says_how_to_install_it(
+def test_without_its_extra_explore_prints_how_to_install_it(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sys.modules["kswarms.scenarios.cli.explore"], "find_spec", lambda _: None)

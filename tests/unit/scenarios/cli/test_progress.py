@@ -1,4 +1,4 @@
-"""How a sweep tells how far it is."""
+"""Progress of a sweep."""
 
 import json
 from collections.abc import Iterator
@@ -24,7 +24,7 @@ def ended(runs: list[Run] = RUNS) -> list[Result]:
     return [(run, outcome, 0.1) for run, outcome in zip(runs, outcomes, strict=True)]
 
 
-def test_time_left_is_told_by_work_not_by_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_time_left_is_estimated_from_work_not_from_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [100.0]
     monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
     count = Count(RUNS)
@@ -33,11 +33,11 @@ def test_time_left_is_told_by_work_not_by_runs(monkeypatch: pytest.MonkeyPatch) 
     count.add(RUNS[0], failed=False)  # 30 of 30 + 30 + 6 + 6 robots
     assert count.left == pytest.approx(5.0 * 42 / 30)
     assert count.rate == pytest.approx(0.2)
-    count.worked = count.work + 1e-9  # added in another order
+    count.worked = count.work + 1e-9  # a rounding error
     assert count.left == 0.0
 
 
-def test_lines_are_json_and_the_last_one_tells_all(
+def test_lines_are_json_and_the_last_one_is_complete(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     now = [100.0]
@@ -70,24 +70,24 @@ def test_a_bar_names_the_scenario_and_counts_failures(capsys: pytest.CaptureFixt
 
 
 @pytest.mark.parametrize("kind", ["none", "bar", "json"])
-def test_nothing_is_told_of_nothing(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_runs_nothing_is_shown(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert list(show_progress([], [], kind)) == []
     assert capsys.readouterr().err == ""
 
 
-def test_steps_are_tracked_on_a_terminal_alone(
+def test_a_bar_of_steps_is_shown_on_a_terminal_only(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert list(track("abc", "spelling", 3)) == ["a", "b", "c"]
     assert capsys.readouterr() == ("", "")
-    monkeypatch.setenv("FORCE_COLOR", "1")  # which rich takes for a terminal
+    monkeypatch.setenv("FORCE_COLOR", "1")  # makes rich assume a terminal
     assert list(track("abc", "spelling", 3)) == ["a", "b", "c"]
     printed = capsys.readouterr()
     assert printed.out == ""
     assert "spelling" in printed.err
 
 
-def test_times_are_told_as_people_say_them() -> None:
+def test_durations_are_in_seconds_minutes_or_hours() -> None:
     assert [format_duration(seconds) for seconds in (0.24, 59.9, 60, 3599.4, 3599.6, 8337)] == [
         *("0.2 s", "59.9 s", "1:00 min", "59:59 min", "1:00 h", "2:19 h"),
     ]

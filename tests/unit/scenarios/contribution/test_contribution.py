@@ -1,4 +1,4 @@
-"""Contributions: games with a robot and without it, compared robot by robot."""
+"""Contributions: games with and without each robot."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -25,7 +25,7 @@ GAME = Game(
 
 
 def conflicts_counted(conflicts: Any, swarms: int) -> list[float]:
-    """Stand in for SUD in time-utility: a number that tells games and swarms apart."""
+    """Replace SUD in time-utility by a number that differs between games and swarms."""
     return [float(len(conflicts["phase"]) + swarm) for swarm in range(swarms)]
 
 
@@ -33,9 +33,6 @@ def played(game: Game, seed: int) -> GameModel:
     model = GameModel(game, seed, record=RECORD)
     model.play()
     return model
-
-
-# Who is meant.
 
 
 @pytest.mark.parametrize(
@@ -47,16 +44,13 @@ def test_robots_are_named_by_number_or_swarm(text: str | None, robots: Sequence[
 
 
 @pytest.mark.parametrize("text", ["7", "-1", "S3", "S0", "s1", "1.0", "01", "all", "", "1,,2", "1-3"])
-def test_other_robots_are_refused(text: str) -> None:
+def test_unknown_robots_are_refused(text: str) -> None:
     with pytest.raises(InputError, match=r"^robots='.*': must be robots, 0 to 6, or swarms, S1, S2$"):
         robots_of(GAME, text)
 
 
-# What is compared.
-
-
 @pytest.mark.parametrize("absent_from", ["learning", "game"])
-def test_the_games_are_those_that_anybody_can_play(absent_from: Any) -> None:
+def test_the_compared_games_equal_games_played_separately(absent_from: Any) -> None:
     rows = contributions(GAME, [1, 5], [3, 4], absent_from, ("a", "b"), time_sud=conflicts_counted)
     assert [(row["seed"], row["robot"]) for row in rows] == [(3, 1), (3, 5), (4, 1), (4, 5)]
     for row in rows:
@@ -88,7 +82,7 @@ def test_the_games_are_those_that_anybody_can_play(absent_from: Any) -> None:
                 )
 
 
-def test_the_reward_is_the_robots_own_on_all_its_conflicts_of_the_measured_game() -> None:
+def test_the_reward_sums_the_robots_conflicts_of_the_measured_game() -> None:
     rows = {row["robot"]: row for row in contributions(GAME, [0, 6], [1])}
     table = played(GAME, 1).tables()["conflicts"]
     conflicts = [dict(zip(table, values, strict=True)) for values in zip(*table.values(), strict=True)]
@@ -110,45 +104,42 @@ def test_the_reward_is_the_robots_own_on_all_its_conflicts_of_the_measured_game(
             assert rows[robot][f"{name}_t_a_met"] == pytest.approx(met) != 0.0
 
 
-def test_in_games_of_one_length_program_time_is_what_action_time_is_not() -> None:
+def test_in_games_of_equal_length_less_action_time_is_more_program_time() -> None:
     for row in contributions(GAME, [2], [0, 1]):
         for others in ("mates", "opponents"):
             freed = row[f"{others}_t_a"] - row[f"{others}_t_a_without"]
             assert row[f"{others}_t_p_without"] - row[f"{others}_t_p"] == pytest.approx(freed, abs=1e-6)
 
 
-def test_whether_a_robot_was_absent_from_the_learning_matters() -> None:
+def test_absence_from_the_learning_changes_the_game() -> None:
     rows = [contributions(GAME, [1], [0, 1, 2], way) for way in ("learning", "game")]
     assert [row["sud"] for row in rows[0]] == [row["sud"] for row in rows[1]]
     assert [row["mates_t_a_without"] for row in rows[0]] != [row["mates_t_a_without"] for row in rows[1]]
 
 
-def test_without_a_measure_sud_in_time_utility_is_unknown() -> None:
+def test_without_a_measure_sud_in_time_utility_is_nan() -> None:
     (row,) = contributions(GAME, [1], [0])
     assert row["time_sud"] != row["time_sud"]
     assert row["sud"] == row["sud"]
 
 
 @pytest.mark.parametrize("robots", [[7], [-1]])
-def test_a_robot_of_no_game_has_no_contribution(robots: list[int]) -> None:
+def test_robots_outside_the_game_are_refused(robots: list[int]) -> None:
     with pytest.raises(InputError, match=r"absent=.*: must be a robot of the game, 0 to 6"):
         contributions(GAME, robots, [0])
 
 
-def test_only_of_a_game_with_all_its_robots() -> None:
+def test_a_game_with_absent_robots_is_refused() -> None:
     with pytest.raises(InputError, match=r"absent=\(3,\): must be empty"):
         contributions(GAME.replace(absent=(3,)), [1], [0])
 
 
 @pytest.mark.slow
-def test_one_worker_finds_what_two_find() -> None:
-    asked = partial(contributions, GAME, [0, 5], [0, 1], time_sud=conflicts_counted)
-    two = asked(play=lambda runs: play_all(runs, 2, RECORD))
-    assert asked() == two
-    assert asked() != contributions(GAME, [0, 5], [2, 3], time_sud=conflicts_counted)
-
-
-# The table.
+def test_the_number_of_workers_does_not_change_the_result() -> None:
+    measure = partial(contributions, GAME, [0, 5], [0, 1], time_sud=conflicts_counted)
+    two = measure(play=lambda runs: play_all(runs, 2, RECORD))
+    assert measure() == two
+    assert measure() != contributions(GAME, [0, 5], [2, 3], time_sud=conflicts_counted)
 
 
 def rows(**changes: Any) -> list[dict[str, Any]]:
@@ -157,7 +148,7 @@ def rows(**changes: Any) -> list[dict[str, Any]]:
     return [{**plain, "robot": robot, **changes} for robot in (2, 0)]
 
 
-def test_a_table_keeps_what_is_of_other_games(tmp_path: Path) -> None:
+def test_a_table_keeps_the_rows_of_other_games(tmp_path: Path) -> None:
     prepare_table(tmp_path)
     for part in (rows(), rows(n=26), rows(absent_from="y"), rows(seed=7)):
         prepare_table(tmp_path)
@@ -167,7 +158,7 @@ def test_a_table_keeps_what_is_of_other_games(tmp_path: Path) -> None:
     table = pq.read_table(path)
     assert table.schema.equals(SCHEMA)
     found = [(row["absent_from"], row["n"], row["seed"], row["robot"]) for row in table.to_pylist()]
-    # The last one has replaced the first.
+    # The last part has replaced the first.
     assert found == [
         *(("x", 1, 7, 0), ("x", 1, 7, 2)),
         *(("x", 26, 1, 0), ("x", 26, 1, 2)),
@@ -175,13 +166,13 @@ def test_a_table_keeps_what_is_of_other_games(tmp_path: Path) -> None:
     ]
 
 
-def test_what_a_killed_process_left_is_removed_before_a_table_is_made(tmp_path: Path) -> None:
-    (tmp_path / f".unfinished-99999999-{FILE}").write_text("half a table")  # no process has this number
+def test_temporary_files_of_killed_processes_are_removed(tmp_path: Path) -> None:
+    (tmp_path / f".unfinished-99999999-{FILE}").write_text("half a table")  # not the id of a process
     prepare_table(tmp_path)
     assert not list(tmp_path.iterdir())
 
 
-def test_a_file_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
+def test_a_foreign_file_is_refused_and_kept(tmp_path: Path) -> None:
     for content in (b"mine", None):
         if content is None:
             pq.write_table(pa.table({"mine": [1]}), tmp_path / FILE)
@@ -193,7 +184,7 @@ def test_a_file_of_somebody_else_is_left_alone(tmp_path: Path) -> None:
         assert (tmp_path / FILE).read_bytes() == before
 
 
-def test_a_write_that_fails_leaves_the_table_as_it_was(
+def test_a_failed_write_leaves_the_table_unchanged(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = write_table(tmp_path, rows())

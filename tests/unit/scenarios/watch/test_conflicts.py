@@ -1,4 +1,4 @@
-"""Conflicts told one by one: what was known is what had been learned before."""
+"""Watched conflicts: the knowledge at their start follows from earlier rewards."""
 
 import math
 from itertools import pairwise
@@ -25,27 +25,27 @@ def _run(policy: str, seed: int = 0, learning: float = 300.0, absent: tuple[int,
 
 
 @pytest.mark.parametrize("rule", ["ucb", "discounted-ucb(discount=0.9)", "greedy"])
-def test_what_is_known_at_the_end_is_what_the_robots_know(rule: str) -> None:
-    # Robot 0 is absent, so that the others have rows unlike their numbers.
+def test_the_last_knowledge_is_that_of_the_robots(rule: str) -> None:
+    # Robot 0 is absent, so the rows of the others differ from their numbers.
     run = _run(f"inter-learner(rule='{rule}')", absent=(0,))
     model = GameModel(run.game, seed=run.seed, record="conflicts")
     model.play()
-    accounts = conflicts_of(run)
+    conflicts = conflicts_of(run)
     for robot in model.members[1]:
         assert isinstance(robot.policy, Learner)
-        own = [a for a in accounts if a.row["robot"] == robot.number and a.row["opponent_swarm"] == 1]
+        own = [a for a in conflicts if a.row["robot"] == robot.number and a.row["opponent_swarm"] == 1]
         last = [a for a in own if a.row["phase"] == "game"]
-        told_then, knows = last[-1].known, arms_of(robot.policy, robot.policy.bandits[0])
-        for then, now in zip(told_then, knows, strict=True):
+        recorded, known = last[-1].known, arms_of(robot.policy, robot.policy.bandits[0])
+        for then, now in zip(recorded, known, strict=True):
             assert then.action == now.action
             assert (then.n, then.q, then.bound) == pytest.approx((now.n, now.q, now.bound), nan_ok=True)
 
 
-def test_each_conflict_changes_what_is_known_at_the_next_by_itself_alone() -> None:
-    accounts = [
+def test_a_conflict_changes_the_knowledge_about_its_action_only() -> None:
+    conflicts = [
         a for a in conflicts_of(_run("inter-learner")) if a.row["robot"] == 7 and a.row["opponent_swarm"] == 1
     ]
-    learned = [(a, b) for a, b in pairwise(accounts) if not math.isnan(a.row["reward"])]
+    learned = [(a, b) for a, b in pairwise(conflicts) if not math.isnan(a.row["reward"])]
     assert len(learned) > 10
     for earlier, later in learned:
         for before, after in zip(earlier.known, later.known, strict=True):
@@ -56,53 +56,53 @@ def test_each_conflict_changes_what_is_known_at_the_next_by_itself_alone() -> No
                 assert after[:3] == pytest.approx(before[:3], nan_ok=True)
 
 
-def test_what_is_chosen_while_learning_has_the_greatest_bound() -> None:
-    accounts = [a for a in conflicts_of(_run("inter-learner")) if a.row["phase"] == "learning" and a.known]
-    compared = [a for a in accounts if not math.isnan(a.known[0].bound)]
+def test_the_action_chosen_during_learning_has_the_greatest_bound() -> None:
+    conflicts = [a for a in conflicts_of(_run("inter-learner")) if a.row["phase"] == "learning" and a.known]
+    compared = [a for a in conflicts if not math.isnan(a.known[0].bound)]
     assert len(compared) > 50
-    for account in compared:
-        bounds = {arm.action: arm.bound for arm in account.known}
-        assert bounds[account.row["action"]] == pytest.approx(max(bounds.values()))
+    for conflict in compared:
+        bounds = {arm.action: arm.bound for arm in conflict.known}
+        assert bounds[conflict.row["action"]] == pytest.approx(max(bounds.values()))
     game = [a for a in conflicts_of(_run("inter-learner")) if a.row["phase"] == "game" and a.known]
-    for account in game:
-        values = {arm.action: arm.q for arm in account.known if arm.n > 0}
-        assert values[account.row["action"]] == pytest.approx(max(values.values()))
+    for conflict in game:
+        values = {arm.action: arm.q for arm in conflict.known if arm.n > 0}
+        assert values[conflict.row["action"]] == pytest.approx(max(values.values()))
 
 
 def test_robots_that_do_not_learn_know_nothing() -> None:
     run = _run("inter-learner")
-    accounts = conflicts_of(run)
-    assert all(a.known == () for a in accounts if a.row["swarm"] == 1 or a.row["opponent_swarm"] == 2)
-    assert [a.row["start"] for a in accounts] == sorted(a.row["start"] for a in accounts)
-    assert {a.row["phase"] for a in accounts} == {"learning", "game"}
+    conflicts = conflicts_of(run)
+    assert all(a.known == () for a in conflicts if a.row["swarm"] == 1 or a.row["opponent_swarm"] == 2)
+    assert [a.row["start"] for a in conflicts] == sorted(a.row["start"] for a in conflicts)
+    assert {a.row["phase"] for a in conflicts} == {"learning", "game"}
 
 
-def test_conflicts_are_taken_once_and_leave_the_memory() -> None:
+def test_conflicts_are_read_once_and_removed_from_the_table() -> None:
     run = _run("inter-learner", learning=0.0)
     model = GameModel(run.game, seed=0, record="conflicts")
-    accounts = ConflictReader(model)
+    conflicts = ConflictReader(model)
     model.step()
-    first = list(accounts.read())
-    assert list(accounts.read()) == []
+    first = list(conflicts.read())
+    assert list(conflicts.read()) == []
     assert not any(model.datacollector.tables["conflicts"].values())
     while model.running:
         model.step()
     whole = sorted(
-        [*first, *accounts.read()], key=lambda account: (account.row["start"], account.row["robot"])
+        [*first, *conflicts.read()], key=lambda conflict: (conflict.row["start"], conflict.row["robot"])
     )
     again = [conflict_cells(conflict, 0.0) for conflict in conflicts_of(run)]
     assert [conflict_cells(conflict, 0.0) for conflict in whole] == again
     assert 0 < len(first) < len(whole)
 
 
-def test_a_conflict_is_told_in_a_line() -> None:
+def test_the_cells_of_a_conflict() -> None:
     run = _run("inter-learner")
-    account = next(
+    conflict = next(
         a for a in conflicts_of(run) if a.known and a.known[0].n > 0 and a.row["phase"] == "learning"
     )
-    cells = conflict_cells(account, 300.0)
-    assert cells[0] == f"{account.row['start'] - 300:.1f}"
-    assert cells[1] == f"{account.row['robot']} of S2"
+    cells = conflict_cells(conflict, 300.0)
+    assert cells[0] == f"{conflict.row['start'] - 300:.1f}"
+    assert cells[1] == f"{conflict.row['robot']} of S2"
     assert cells[4].startswith("flight ")
-    assert cells[5] == account.row["action"]
+    assert cells[5] == conflict.row["action"]
     assert format_number(math.nan) == "–"

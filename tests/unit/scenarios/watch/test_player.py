@@ -1,4 +1,4 @@
-"""A game that is stepped, wound back and looked into is the game that is played in one go."""
+"""A game that is stepped, rewound and inspected equals a game played in one go."""
 
 import gc
 import weakref
@@ -34,7 +34,7 @@ def _state(player: Player) -> tuple[Any, ...]:
     return player.time, player.snapshot().positions.tolist(), player.model.results()
 
 
-def test_a_game_watched_step_by_step_is_the_game_played_in_one_go() -> None:
+def test_a_game_played_in_steps_equals_a_game_played_in_one_go() -> None:
     player = Player(LEARNING, 5)
     while not player.ended:
         player.advance(0.7)
@@ -45,7 +45,7 @@ def test_a_game_watched_step_by_step_is_the_game_played_in_one_go() -> None:
     assert player.time == 40.0
 
 
-def test_time_is_negative_while_the_learners_learn() -> None:
+def test_time_is_negative_during_learning() -> None:
     player = Player(LEARNING, 0)
     assert (player.time, player.begin) == (-60.0, 60.0)
     player.advance(59.9)
@@ -57,7 +57,7 @@ def test_time_is_negative_while_the_learners_learn() -> None:
     assert Player(_game(), 0).time == 0.0
 
 
-def test_winding_back_shows_what_was_there() -> None:
+def test_rewinding_restores_the_state() -> None:
     player = Player(LEARNING, 1)
     player.seek(-20.0)
     before = _state(player)
@@ -71,7 +71,7 @@ def test_winding_back_shows_what_was_there() -> None:
     assert player.history[0].time == -60.0
 
 
-def test_a_step_is_at_least_one_period_and_the_end_is_the_end() -> None:
+def test_a_step_is_at_least_one_period_and_stops_at_the_end() -> None:
     player = Player(_game(), 0)
     player.advance(0.0)
     assert player.time == 0.1
@@ -81,32 +81,32 @@ def test_a_step_is_at_least_one_period_and_the_end_is_the_end() -> None:
     assert player.time == 40.0
 
 
-def test_the_next_conflict_of_a_robot_is_where_it_begins() -> None:
+def test_the_game_stops_where_the_next_conflict_begins() -> None:
     player = Player(LEARNING, 2)
     for _ in range(3):
         before = player.time
         player.to_next_conflict(6)
         assert player.time > before
         assert player.snapshot().in_action[6] or player.ended
-    # Its start is told when it has closed: it begins at the instant before this step.
+    # The conflict is recorded when it ends. It begins at the instant before this step.
     start = player.time - 0.1
     player.to_next_conflict(6)
     newest = player.latest_conflicts(6, 1)[0]
     assert newest.row["start"] - player.begin == pytest.approx(start)
     player.seek(-0.05)
-    player.to_next_conflict(6)  # although the counts begin anew with the measured game
+    player.to_next_conflict(6)  # although the counts restart with the measured game
     assert player.time > 0.0
 
 
-def test_conflicts_are_told_newest_first_of_one_robot_or_of_all() -> None:
+def test_latest_conflicts_are_newest_first() -> None:
     player = Player(_game(n=16), 0)
     player.seek(40.0)
     everybody = player.latest_conflicts(None, 1000)
     assert len(everybody) == len(player.conflicts) > 20
     own = player.latest_conflicts(3, 5)
-    assert [account.row["start"] for account in own] == sorted((a.row["start"] for a in own), reverse=True)
-    assert {account.row["robot"] for account in own} == {3}
-    assert own == [account for account in everybody if account.row["robot"] == 3][:5]
+    assert [conflict.row["start"] for conflict in own] == sorted((a.row["start"] for a in own), reverse=True)
+    assert {conflict.row["robot"] for conflict in own} == {3}
+    assert own == [conflict for conflict in everybody if conflict.row["robot"] == 3][:5]
 
 
 def test_a_long_history_is_thinned_and_keeps_its_first_sample(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -120,17 +120,17 @@ def test_a_long_history_is_thinned_and_keeps_its_first_sample(monkeypatch: pytes
     assert times[-1] == 100.0
 
 
-def test_playing_on_does_not_change_a_history_that_was_given() -> None:
+def test_a_returned_history_does_not_change() -> None:
     player = Player(LEARNING, 0)
-    given = player.history
-    before = list(given)
+    returned = player.history
+    before = list(returned)
     player.advance(10.0)
-    assert given == before
+    assert returned == before
     assert player.history[: len(before)] == before
     assert len(player.history) > len(before)
 
 
-def test_a_sample_has_the_curves_of_every_swarm() -> None:
+def test_a_sample_has_the_results_of_every_swarm() -> None:
     player = Player(LEARNING, 3)
     player.seek(40.0)
     last = player.history[-1]
@@ -140,7 +140,7 @@ def test_a_sample_has_the_curves_of_every_swarm() -> None:
     assert last.fights == {(2, 1): fighters / len(learners)}
 
 
-def test_a_game_let_go_is_freed() -> None:
+def test_a_released_game_is_freed() -> None:
     player = Player(_game(), 0)
     player.advance(1.0)
     first = weakref.ref(player.model)
@@ -154,7 +154,7 @@ def test_a_game_let_go_is_freed() -> None:
     assert second() is None
 
 
-def test_a_robot_is_seen_as_it_is() -> None:
+def test_a_view_has_the_state_of_the_robot() -> None:
     player = Player(LEARNING, 4)
     player.seek(-10.0)
     model = player.model
