@@ -1,6 +1,5 @@
 """Fixed policies and their choices (section 2.4)."""
 
-import pickle
 from typing import Final
 
 import pytest
@@ -58,17 +57,6 @@ def test_choices_against_own_and_other_swarms(name: str, swarm: int, actions: tu
     within, against = CHOICES[name][actions is OPEN]
     policy = made(name, swarm, actions)
     assert choices(policy) == [within if opponent == swarm else against for opponent in SWARMS]
-
-
-@every_set
-@every_swarm
-@every_policy
-def test_choices_are_repeatable_also_after_pickling(
-    name: str, swarm: int, actions: tuple[Action, ...]
-) -> None:
-    policy, other = (made(name, swarm, actions) for _ in range(2))
-    first = choices(policy)
-    assert choices(policy) == choices(other) == choices(pickle.loads(pickle.dumps(policy))) == first
 
 
 @every_policy

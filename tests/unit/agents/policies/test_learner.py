@@ -1,36 +1,23 @@
 """The learner, conflict by conflict: which bandit learns, and the choices afterwards (Algorithm 1)."""
 
-import copy
 import math
-import pickle
 from collections import Counter
+from typing import Any
 
 import pytest
 from scipy.stats import chisquare
 
-from kswarms.agents.actions import AWAY, TOWARDS, Action
+from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.policies.interface import Setting
+from kswarms.agents.conformance.policies import TWO, setting
 from kswarms.agents.policies.learner import Learner
 from kswarms.agents.policies.saved import snapshot_of
-from kswarms.agents.policies.spec import deal, make_policy, parse_policies
-from kswarms.agents.streams import Purpose, Streams, stream
+from kswarms.agents.policies.spec import make_policy
 
-FLIGHT = Action(name="flight", direction=AWAY, duration=1.8)
-FIGHT = Action(name="fight", direction=TOWARDS, duration=1.0)
+FLIGHT, FIGHT = TWO
 
 
-def setting(
-    swarm: int = 1,
-    swarms: int = 2,
-    actions: tuple[Action, ...] = (FLIGHT, FIGHT),
-    seed: int = 0,
-    robot: int = 5,
-) -> Setting:
-    return Setting(swarm, swarms, actions, Streams(seed, robot))
-
-
-def learner(text: str = "learner", **where: int) -> Learner:
+def learner(text: str = "learner", **where: Any) -> Learner:
     policy = make_policy(text, setting(**where))
     assert isinstance(policy, Learner)
     return policy
@@ -202,39 +189,12 @@ def test_a_snapshot_has_all_learned_values() -> None:
     assert snapshot_of(make_policy("avoid", setting())) == []
 
 
-def test_copies_continue_alike_and_independently() -> None:
-    policy = learner("learner(rule='uniform-random')")
-    teach(policy, 0, {"flight": 3.0, "fight": 1.0}, rounds=9)
-    twins = [copy.deepcopy(policy), pickle.loads(pickle.dumps(policy)), policy]
-    runs = [[twin.choose(k % 2).name for k in range(60)] for twin in twins]
-    assert runs[0] == runs[1] == runs[2]
-    assert len(set(runs[0])) == 2
-
-
 def test_the_random_policy_fights_others_half_of_the_time_and_its_own_swarm_never() -> None:
     policy = make_policy("random", setting(swarms=3))
     assert {policy.choose(1) for _ in range(100)} == {FLIGHT}
     counts = Counter((opponent, policy.choose(opponent).name) for _ in range(2000) for opponent in (0, 2))
     assert chisquare(list(counts.values())).pvalue > 1e-4
     assert len(counts) == 4
-
-
-def test_policies_draw_only_from_their_own_streams() -> None:
-    streams = Streams(4, 9)
-    where = Setting(1, 2, (FLIGHT, FIGHT), streams)
-    for text in ("random", "learner(rule='uniform-random')", "learner(rule='greedy')"):
-        policy = make_policy(text, where)
-        for k in range(50):
-            policy.choose(k % 2)
-    for purpose in set(Purpose) - {Purpose.EXPLORE, Purpose.POLICY}:
-        assert streams.draws(purpose).random() == stream(4, 9, purpose).random()
-
-
-def test_learners_are_dealt_out_like_other_policies() -> None:
-    text = "inter-learner(reward='wlu(delta={1: 0.1, 2: 0.2}, b=1)')+avoid"
-    learner = text.removesuffix("+avoid")
-    assert [spec.text for spec in parse_policies(text)] == [learner, "avoid"]
-    assert [spec.text for spec in deal(text, 3)] == [learner, learner, "avoid"]
 
 
 def test_an_inter_learner_needs_another_swarm() -> None:

@@ -2,18 +2,12 @@
 
 import pytest
 
-from kswarms.agents.actions import AWAY, TOWARDS, Action
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.policies.interface import Setting
+from kswarms.agents.conformance.policies import setting
 from kswarms.agents.policies.spec import make_policy
-from kswarms.agents.streams import Streams
 from kswarms.model.foraging import ForagingModel
 
-ACTIONS = (
-    Action(name="flight", direction=AWAY, duration=1.8),
-    Action(name="fight", direction=TOWARDS, duration=1.0),
-)
-SETTING = Setting(1, 2, ACTIONS, Streams(0, 0))
+SETTING = setting()
 
 # Policy, field, how the value looks, a part of what is allowed.
 WRONG = [
@@ -88,10 +82,9 @@ def test_an_opponent_outside_the_game_is_refused(name: str, opponent: int) -> No
 def test_an_opponent_that_is_not_learned_about_is_refused(
     name: str, about: str, unknown: int, known: int
 ) -> None:
-    setting = SETTING._replace(swarm=1, swarms=2)
-    make_policy(f"{about}(reward='wlu({name}={{{known}: 0.5}})')", setting)
+    make_policy(f"{about}(reward='wlu({name}={{{known}: 0.5}})')", SETTING)
     with pytest.raises(InputError, match=f"names swarm {unknown}, which is not learned about"):
-        make_policy(f"{about}(reward='wlu({name}={{{unknown}: 0.5}})')", setting)
+        make_policy(f"{about}(reward='wlu({name}={{{unknown}: 0.5}})')", SETTING)
 
 
 @pytest.mark.parametrize(

@@ -7,20 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from kswarms.agents.actions import AWAY, TOWARDS, Action
+from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.conformance.policies import TWO, setting
 from kswarms.agents.learning.rewards import WLU
 from kswarms.agents.policies.editing import with_learning
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.learner import Learner
 from kswarms.agents.policies.spec import deal, make_policy, parse_policies
-from kswarms.agents.streams import Streams
 from kswarms.agents.user_code.loading import load_class
-
-ACTIONS = (
-    Action(name="flight", direction=AWAY, duration=1.8),
-    Action(name="fight", direction=TOWARDS, duration=1.0),
-)
 
 
 class Patient:
@@ -33,10 +28,6 @@ class Patient:
         return self.actions[0]
 
 
-def setting(robot: int = 0) -> Setting:
-    return Setting(1, 2, ACTIONS, Streams(0, robot))
-
-
 def test_a_text_is_parsed_once_and_printed_as_written() -> None:
     text = "avoid + inter-learner( rule='greedy' )"
     specs = parse_policies(text)
@@ -46,8 +37,8 @@ def test_a_text_is_parsed_once_and_printed_as_written() -> None:
 
 
 def test_robots_of_a_policy_share_reward_and_rule_but_no_bandit() -> None:
-    factory = parse_policies("learner(reward='wlu(delta=0.2)')")[0].factory(ACTIONS)
-    one, other = (factory(setting(robot)) for robot in (0, 1))
+    factory = parse_policies("learner(reward='wlu(delta=0.2)')")[0].factory(TWO)
+    one, other = (factory(setting(robot=robot)) for robot in (0, 1))
     assert isinstance(one, Learner)
     assert isinstance(other, Learner)
     assert one.reward is other.reward
