@@ -43,13 +43,7 @@ def stream(seed: int, robot: int, purpose: Purpose) -> Generator:
 
 
 class Streams:
-    """The streams of one robot, each created on first use.
-
-    Parameters
-    ----------
-    seed, robot : int
-        As in `stream`.
-    """
+    """The streams of one robot, see `stream`; each is created on first use."""
 
     def __init__(self, seed: int, robot: int) -> None:
         self.seed = seed

@@ -43,15 +43,7 @@ class InputError(ValueError):
 
     @classmethod
     def from_validation(cls, error: ValidationError, fields: tuple[str, ...]) -> Self:
-        """Convert the first error of a pydantic validation.
-
-        Parameters
-        ----------
-        error : pydantic.ValidationError
-            The error.
-        fields : tuple of str
-            Names of the valid fields, listed if an unknown field was given.
-        """
+        """Convert the first error of a pydantic validation; `fields` are the names of the valid fields."""
         first = error.errors()[0]
         unknown = first["type"] == "extra_forbidden"
         # For a field with several types, pydantic adds the name of the type to the path: drop what is no

@@ -46,12 +46,9 @@ def settings() -> list[Setting]:
 def play_conflicts(
     policy: Policy, where: Setting, conflicts: int = 80, learning: bool = True
 ) -> list[tuple[Any, ...]]:
-    """Play conflicts that do not depend on the policy; return its choices and what it learned.
+    """Play conflicts that do not depend on the policy and check what its methods return.
 
-    Raises
-    ------
-    CheckError
-        If a method returns a value that a game cannot use.
+    Returns the choices as (opponent, action), each followed by the result of ``learn`` if there is one.
     """
     draws, story = np.random.default_rng(7), []
     learn = getattr(policy, "learn", None) if learning else None

@@ -22,13 +22,7 @@ def cases() -> Iterator[Case]:
 
 
 def compute_rewards(reward: Reward, conflicts: Iterable[Case]) -> list[float]:
-    """Return the rewards of some conflicts.
-
-    Raises
-    ------
-    CheckError
-        If one is no finite number.
-    """
+    """Return the rewards of some conflicts; check that they are finite."""
     rewards = []
     for case in conflicts:
         r = reward.of(*case)

@@ -26,10 +26,7 @@ def draws(seed: int = 0) -> Generator:
 def choose_arms(rule: Rule, arms: int, seed: int, conflicts: int = 60) -> list[int]:
     """Return the choices in conflicts whose outcomes depend on the choices alone.
 
-    Raises
-    ------
-    CheckError
-        If the factor is out of range, a choice is no arm, or a choice changes the bandit.
+    Check that the factor is in (0, 1], choices are arms, and no choice changes the bandit.
     """
     bandit, stream_of_robot, noise = Bandit(arms), draws(seed), np.random.default_rng(99)
     factor, chosen = rule.factor, []

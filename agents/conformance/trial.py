@@ -18,13 +18,6 @@ from kswarms.agents.user_code.loading import reference_to, user_errors
 def try_policy(spec: PolicySpec, setting: Setting) -> None:
     """Build a policy and exercise its user-defined parts once, so that errors surface before the game.
 
-    Parameters
-    ----------
-    spec : PolicySpec
-        The policy.
-    setting : Setting
-        Setting of a robot of the game.
-
     Raises
     ------
     InputError

@@ -32,19 +32,7 @@ class Bandit:
         self.choices = 0
 
     def update(self, arm: int, reward: float, time: float, discount: float = 1.0) -> None:
-        """Add a conflict.
-
-        Parameters
-        ----------
-        arm : int
-            Arm of the action.
-        reward : float
-            R of the conflict (s).
-        time : float
-            T(a) + T(p) of the conflict (s).
-        discount : float
-            Factor for earlier conflicts, λ of discounted UCB.
-        """
+        """Add a conflict: its R and T(a) + T(p) (s); `discount` is λ of discounted UCB."""
         if discount != 1.0:
             for sums in (self.reward, self.time, self.count):
                 sums[:] = [discount * value for value in sums]

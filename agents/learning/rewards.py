@@ -130,11 +130,7 @@ REWARDS: Final[dict[str, type[Reward]]] = {
 def make_reward(reward: str | Reward) -> Reward:
     """Return a reward, built from its text if one is given.
 
-    Parameters
-    ----------
-    reward : str or Reward
-        A reward, the name of one of `REWARDS`, or a subclass of `Reward` as ``path/to/my_file.py:MyReward``,
-        with arguments.
+    A text is the name of one of `REWARDS` or a user-defined subclass of `Reward`, with arguments.
 
     Raises
     ------

@@ -28,15 +28,7 @@ class Rule(Checked, ABC):
         return 1.0
 
     def choose(self, bandit: Bandit, draws: Generator) -> int:
-        """Return the arm to pull, from 0.
-
-        Parameters
-        ----------
-        bandit : Bandit
-            The bandit of the opponent's swarm.
-        draws : numpy.random.Generator
-            The robot's stream for exploration.
-        """
+        """Return the arm to pull, from 0; `draws` is the robot's stream for exploration."""
         if min(bandit.count) < FORGOTTEN:
             untried = [arm for arm, count in enumerate(bandit.count) if count < FORGOTTEN]
             return untried[_pick(len(untried), draws)]
@@ -141,11 +133,7 @@ RULES: Final[dict[str, type[Rule]]] = {
 def make_rule(rule: str | Rule) -> Rule:
     """Return a selection rule, built from its text if one is given.
 
-    Parameters
-    ----------
-    rule : str or Rule
-        A rule, the name of one of `RULES`, or a subclass of `Rule` as ``path/to/my_file.py:MyRule``, with
-        arguments.
+    A text is the name of one of `RULES` or a user-defined subclass of `Rule`, with arguments.
 
     Raises
     ------

@@ -11,19 +11,10 @@ def with_learning(policy: str, part: str, text: str | None = None, /, **argument
 
     Parameters
     ----------
-    policy : str
-        One or several policies.
-    part : {'reward', 'rule'}
-        The part to change.
-    text : str
-        The new reward or rule; by default the current one.
-    **arguments
-        Arguments of the reward or rule to change.
-
-    Raises
-    ------
-    InputError
-        If a text cannot be parsed.
+    policy, part : str
+        One or several policies; ``reward`` or ``rule``.
+    text : str, optional
+        The new reward or rule. By default the current one is kept, with `arguments` changed.
 
     Examples
     --------

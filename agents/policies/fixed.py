@@ -6,15 +6,7 @@ from kswarms.agents.streams import Purpose
 
 
 class FixedPolicy:
-    """Take one action within the own swarm and one against every other swarm.
-
-    Parameters
-    ----------
-    setting : Setting
-        Where the policy plays.
-    within, against : Action
-        Action within the own swarm and action against other swarms.
-    """
+    """Take the action `within` within the own swarm and `against` against other swarms."""
 
     def __init__(self, setting: Setting, within: Action, against: Action) -> None:
         self.swarm = setting.swarm
@@ -52,13 +44,7 @@ class Aggressive(FixedPolicy):
 
 
 class RandomPolicy:
-    """Flight within the own swarm, flight or fight with equal probability against others.
-
-    Parameters
-    ----------
-    setting : Setting
-        Where the policy plays.
-    """
+    """Flight within the own swarm, flight or fight with equal probability against others."""
 
     def __init__(self, setting: Setting) -> None:
         self.swarm = setting.swarm

@@ -113,17 +113,9 @@ class Learner:
         return self.actions[self._arm]
 
     def learn(self, t_a: float, t_p: float, n_active: int) -> tuple[float, float]:
-        """Report the outcome of the latest conflict and reward its arm.
+        """Reward the arm of the latest conflict; return R (s) and the arm's Q, NaN if nothing is learned.
 
-        Parameters
-        ----------
-        t_a, t_p, n_active
-            As in `LearningPolicy.learn`.
-
-        Returns
-        -------
-        reward, value : float
-            R of the conflict (s) and Q of its arm after it; NaN if the swarm is not learned about.
+        Parameters are those of `LearningPolicy.learn`.
         """
         opponent, arm = self._opponent, self._arm
         bandit = self.bandits.get(opponent)

@@ -90,15 +90,7 @@ def flight(actions: Sequence[Action]) -> Action:
 
 
 def best_actions(arms: Sequence[Mapping[str, Any]], actions: Sequence[Action]) -> dict[int, Action]:
-    """Return argmax Q for each opponent swarm (from 0); flight if no arm was tried.
-
-    Parameters
-    ----------
-    arms : sequence of dict
-        Arms as in `Learner.snapshot`.
-    actions : sequence of Action
-        The actions of the game.
-    """
+    """Return argmax Q for each opponent swarm (from 0); flight if none of its arms was tried."""
     by_name = {action.name: action for action in actions}
     best: dict[int, Mapping[str, Any] | None] = {}
     for arm in arms:
@@ -118,22 +110,7 @@ def snapshot_of(policy: Policy) -> list[dict[str, Any]]:
 
 
 def save(path: Path, swarm: int, robots: Sequence[Sequence[Mapping[str, Any]]]) -> None:
-    """Write the learned policies of a swarm atomically.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    swarm : int
-        Swarm-ID, from 1.
-    robots : sequence of sequence of dict
-        The learned arms of each robot, as in `Learner.snapshot`.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
-    """
+    """Write the learned policies of a swarm (from 1) atomically: the arms of each robot's snapshot."""
     saved = SavedPolicies(swarm=swarm, robots=[list(map(_without_nan, arms)) for arms in robots])
     text = json.dumps(saved.model_dump(), indent=1)
     with atomic_path(path) as file:
@@ -146,25 +123,13 @@ def _without_nan(arm: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def check_arms(arms: Sequence[Mapping[str, Any]]) -> None:
-    """Check that arms can be saved.
-
-    Raises
-    ------
-    InputError, KeyError, TypeError
-        If they are not as in `Learner.snapshot`.
-    """
+    """Raise an `InputError`, KeyError or TypeError if arms are not as in `Learner.snapshot`."""
     for arm in arms:
         _SavedArm(**_without_nan(arm))
 
 
 def load(path: Path) -> SavedPolicies:
-    """Read a file written by `save`.
-
-    Raises
-    ------
-    InputError
-        If there is no such file, or it is damaged or of another format.
-    """
+    """Read a file written by `save`; raise an `InputError` if it is missing, damaged or of another format."""
     try:
         return _load(path, path.stat().st_mtime_ns)
     except (OSError, ValueError, TypeError, RecursionError) as error:

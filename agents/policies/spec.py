@@ -93,12 +93,7 @@ class PolicySpec:
         return self.given is not None or is_reference(self.name)
 
     def factory(self, actions: Sequence[Action]) -> Factory:
-        """Load the class and check the arguments; return a factory for the robots of one game.
-
-        Parameters
-        ----------
-        actions : sequence of Action
-            The actions of the game.
+        """Load the class and check the arguments; return a factory for robots of a game with these actions.
 
         Raises
         ------
@@ -133,13 +128,7 @@ class PolicySpec:
     __call__ = build
 
     def files(self) -> list[Path]:
-        """Return the files of the policy: user-defined code, also of reward and rule, and learned policies.
-
-        Raises
-        ------
-        InputError
-            If the policy has no text, or a module does not exist.
-        """
+        """Return the files of user-defined code, also of reward and rule, and of learned policies."""
         name, arguments = self._require_call()
         parts = {part: arguments.get(part) for part in LEARNS_BY}
         named = {"policy": name}
@@ -169,15 +158,12 @@ class PolicySpec:
 def parse_policies(policy: PolicyLike) -> tuple[PolicySpec, ...]:
     """Return the policies of a swarm, in the order in which they are dealt out.
 
-    Parameters
-    ----------
-    policy : str, class, callable, or sequence of these
-        A policy, or several: a list, or a text joined by ``+``. ``mixed`` stands for ``avoid+aggressive``.
+    Names and values are checked when a policy is built.
 
     Raises
     ------
     InputError
-        If a text cannot be parsed. Names and values are checked when the policy is built.
+        If a text cannot be parsed, or the policy is no text, callable or sequence of these.
 
     Examples
     --------
@@ -213,21 +199,9 @@ def _parse_text(text: str) -> tuple[PolicySpec, ...]:
 
 
 def deal(policy: PolicyLike, size: int) -> list[PolicySpec]:
-    """Deal out the policies of a swarm to its robots.
+    """Return the policy of each of the `size` robots of a swarm.
 
     Each policy gets an equal share of the robots, in order; remaining robots go to the first policies.
-
-    Parameters
-    ----------
-    policy : str, class, callable, or sequence of these
-        As in `parse_policies`.
-    size : int
-        Number of robots in the swarm.
-
-    Returns
-    -------
-    list of PolicySpec, length `size`
-        The policy of each robot.
 
     Examples
     --------
@@ -240,13 +214,7 @@ def deal(policy: PolicyLike, size: int) -> list[PolicySpec]:
 
 
 def make_policy(policy: str | Factory, setting: Setting) -> Policy:
-    """Build one policy for one robot.
-
-    Raises
-    ------
-    InputError
-        If there is no such policy, or it does not fit the game.
-    """
+    """Build one policy for one robot, see `PolicySpec.factory`."""
     (spec,) = parse_policies(policy)
     return spec.build(setting)
 

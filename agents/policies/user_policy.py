@@ -9,13 +9,7 @@ from kswarms.agents.user_code.syntax import require_known
 
 
 def check_factory(reference: str, make: Callable[..., Any], arguments: Mapping[str, Any]) -> None:
-    """Check that a class or factory makes policies, takes a setting and takes the arguments.
-
-    Raises
-    ------
-    InputError
-        If a method or an argument is missing, or an argument is unknown.
-    """
+    """Raise an `InputError` if a factory lacks a method of policies, or does not take the arguments."""
     if inspect.isclass(make):
         missing = [] if callable(getattr(make, "choose", None)) else ["choose"]
         if callable(getattr(make, "learn", None)) and not callable(getattr(make, "freeze", None)):

@@ -158,20 +158,14 @@ class Krembot(TimedAgent):
     # The conflict.
 
     def meet(self, now: int, other: int, swarm: int, angle: float, active: int, vacant: int) -> None:
-        """Begin a conflict and close the previous one.
+        """Begin a conflict at `now` (periods) and close the previous one.
 
         Parameters
         ----------
-        now : int
-            The time (periods).
-        other, swarm : int
-            The robot ahead and its swarm, from 0; the policy is told only the swarm.
-        angle : float
-            Bearing of the robot ahead (rad).
-        active : int
-            Number of active sensors, n'_i of Eq. 5.4.
-        vacant : int
-            The most vacant directions, one bit per sensor.
+        other, swarm, angle : int, int, float
+            The robot ahead, its swarm (from 0) and its bearing (rad). The policy is told only the swarm.
+        active, vacant : int
+            Number of active sensors, n'_i of Eq. 5.4, and the most vacant directions, one bit per sensor.
         """
         self.close(now)
         index = self.index

@@ -44,28 +44,10 @@ def wall_ray(x: float, y: float, dx: float, dy: float, half: float) -> float:
 
 @compiled
 def walls_met(x: float, y: float, heading: float, half: float, reach: float, half_angle: float) -> int:
-    """Return the walls ahead of a robot.
+    """Return the walls ahead of a robot at (x, y): a sum of 1, 2, 4, 8 for the walls +x, −x, +y, −y.
 
-    A wall counts if the robot heads towards it and a ray meets it within `reach`. There is one ray ahead, and
-    two more at its sides if `half_angle` is not 0.
-
-    Parameters
-    ----------
-    x, y : float
-        Centre of the robot.
-    heading : float
-        Heading of the robot.
-    half : float
-        Half the side of the arena.
-    reach : float
-        Length of the rays, from the centre.
-    half_angle : float
-        Angle between the ray ahead and the side rays, 0 for no side rays.
-
-    Returns
-    -------
-    int
-        Sum of 1 (x = +half), 2 (x = −half), 4 (y = +half), 8 (y = −half).
+    A wall counts if the robot heads towards it and a ray from the centre meets it within `reach`. There is
+    one ray ahead, and two more at ± `half_angle` if that is not 0.
     """
     met = 0
     if half - max(abs(x), abs(y)) >= reach:

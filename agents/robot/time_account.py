@@ -85,14 +85,9 @@ class TimedAgent(ContinuousSpaceAgent):
         return t_a, t_p
 
     def close(self, now: int, learn: bool = True) -> None:
-        """Count the time up to `now` and close the open conflict.
+        """Count the time up to `now` (periods) and close the open conflict.
 
-        Parameters
-        ----------
-        now : int
-            The time (periods).
-        learn : bool
-            Whether the policy learns from the conflict. False where the end of a phase cuts it off.
+        The policy does not learn from a conflict that the end of a phase cuts off (`learn` is False).
         """
         elapsed = now - self._since
         self._since = now

@@ -30,16 +30,13 @@ def is_reference(name: str) -> bool:
 def load_class(field: str, reference: str, base: type | None = None) -> type[Any]:
     """Return the class that a reference names.
 
-    A file is executed once per process and content. A module is imported; the current directory is searched
-    too.
+    A file is executed once per process and content; its path is relative to the current directory. A module
+    is imported, also from the current directory.
 
     Parameters
     ----------
-    field : str
-        Name of the field, for errors.
-    reference : str
-        ``path/to/my_file.py:MyPolicy``, the path relative to the current directory, or
-        ``package.module:MyPolicy``.
+    field, reference : str
+        Name of the field, for errors, and the reference.
     base : type, optional
         Required base class, all of whose abstract methods must be defined.
 
@@ -65,11 +62,7 @@ def load_class(field: str, reference: str, base: type | None = None) -> type[Any
 
 
 def reference_to(kind: Any) -> str | None:
-    """Return the reference from which `load_class` loads a class in another process; none if there is none.
-
-    A class of an imported module is ``package.module:MyPolicy``. A class of a script, or of a file loaded by
-    `load_class`, is ``path/to/my_file.py:MyPolicy``.
-    """
+    """Return the reference from which another process can load a class; None if there is none."""
     module = sys.modules.get(getattr(kind, "__module__", ""))
     name = getattr(kind, "__qualname__", "")
     if module is None or not inspect.isclass(kind) or getattr(module, name, None) is not kind:
@@ -84,15 +77,7 @@ def reference_to(kind: Any) -> str | None:
 
 
 def sources(field: str, reference: str) -> list[Path]:
-    """Return the files with the code of a reference.
-
-    These are the named file, or the module's file, or all Python files of the module's package.
-
-    Raises
-    ------
-    InputError
-        If there is no such file or module.
-    """
+    """Return the files with the code of a reference: its file, or all files of the module's package."""
     where, _ = _split(field, reference)
     if where.endswith(".py"):
         return [Path(where)]
@@ -105,20 +90,7 @@ def sources(field: str, reference: str) -> list[Path]:
 
 @contextlib.contextmanager
 def user_errors(field: str, reference: str, what: str) -> Iterator[None]:
-    """Re-raise errors of user code as `InputError` with file and line.
-
-    Parameters
-    ----------
-    field, reference : str
-        Name of the field and of the user-defined class.
-    what : str
-        The operation, as the subject of the message.
-
-    Raises
-    ------
-    InputError
-        If the code in the context raises. An `InputError` is passed on.
-    """
+    """Re-raise errors of user code as `InputError` with file and line; `what` is the message's subject."""
     try:
         yield
     except InputError:

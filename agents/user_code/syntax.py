@@ -25,17 +25,10 @@ class Call(NamedTuple):
 def parse_call(field: str, text: str) -> Call:
     """Parse ``name`` or ``name(key=value, …)``, where the values are Python literals.
 
-    Parameters
-    ----------
-    field : str
-        Name of the field, for errors.
-    text : str
-        For example ``wlu(delta={1: 0.02, 3: 0.125})``.
-
     Raises
     ------
     InputError
-        If the text cannot be parsed.
+        If the text cannot be parsed; it names `field`.
 
     Examples
     --------
@@ -68,23 +61,12 @@ def is_literal(value: Any) -> bool:
 
 
 def build(field: str, text: str, known: Mapping[str, type[_Thing]], base: type) -> _Thing:
-    """Build the object that a text describes.
-
-    Parameters
-    ----------
-    field : str
-        Name of the field, for errors.
-    text : str
-        Name of one of `known` or reference to a user-defined class, with arguments.
-    known : mapping of str to type
-        The classes by name.
-    base : type
-        Base class that a user-defined class must have.
+    """Build the object that a text describes: of a class in `known`, or of a user-defined subclass of `base`.
 
     Raises
     ------
     InputError
-        If the name is unknown or an argument is not allowed.
+        If the name is unknown or an argument is not allowed; it names `field`.
     """
     call = parse_call(field, text)
     if call.name in known:
