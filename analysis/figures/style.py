@@ -33,6 +33,10 @@ _MAX_GAP: Final = 4
 """Points of single seeds are at most a quarter of this from their density (robots)."""
 
 
+_LEGEND_LINE, _LETTER = 0.75, 0.08
+"""Width of the line and of a letter in a legend (inches)."""
+
+
 @dataclass(frozen=True)
 class LineStyle:
     """How a curve is drawn, in matplotlib's terms."""
@@ -140,12 +144,14 @@ def sheet(title: str, width: float = 7.0, height: float = 4.9) -> Iterator[Figur
 def legend_below(figure: Figure, title: str = "") -> None:
     """Put the legend of the first axes below all axes."""
     handles, labels = figure.axes[0].get_legend_handles_labels()
+    width = figure.get_figwidth() - _LEGEND_LINE
+    column = _LEGEND_LINE + _LETTER * max(map(len, labels), default=0)
     figure.legend(
         handles,
-        labels,
+        [fill(label, width=int(width / _LETTER), break_on_hyphens=False) for label in labels],
         title=title,
         loc="outside lower center",
-        ncols=min(len(labels), 3),
+        ncols=max(1, min(len(labels), 3, int(figure.get_figwidth() / column))),
         handlelength=3.5,
     )
 

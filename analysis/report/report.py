@@ -162,8 +162,8 @@ def _summary(results: Results, covered: pd.DataFrame) -> list[str]:
     return [
         f"{runs['run'].nunique():,} games with {span(seeds.min(), seeds.max())} seeds at each density."
         + (planned if len(covered) else ""),
-        "Each figure is shown in the form of the source, then with the 95 % interval of each mean and with "
-        "single seeds. Its numbers are below it, beside published ones if these are available.",
+        "Each figure is shown twice: with means only, as in the source, and with 95 % intervals and single "
+        "seeds. Its numbers are below it, beside published numbers if these are available.",
     ]
 
 

@@ -48,15 +48,15 @@ def scenario_part(results: Results, scenario: str, title: str, missing: str, tab
     frame = scores.scores(results.runs, scenario)
     curves = ", ".join(dict.fromkeys(frame["curve"]))
     alt = f"Line chart of the {shown} over the number of robots in all, for {curves}"
-    for name, detail, form in (
-        (f"{scenario}-source", False, "in the form of the source"),
-        (scenario, True, "with intervals and single seeds"),
+    for name, detail, content in (
+        (f"{scenario}-source", False, "means only"),
+        (scenario, True, "means, 95 % intervals and single seeds"),
     ):
         part.add_figure(
             name,
             over_n.figure_of(results.runs, scenario, title, detail),
-            f"{alt}, {form}; the table of {scenario} has its numbers.",
-            f"{shown[0].upper()}{shown[1:]}, {form}.",
+            f"{alt}, {content}; the table of {scenario} has its numbers.",
+            f"{shown[0].upper()}{shown[1:]}: {content}.",
         )
     part.add_table(scenario, f"Numbers of {scenario}", scores.scores_table(frame), frame)
     if results.policies is not None and scenario in set(results.policies["scenario"]):

@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.colours import SWARM_COLOURS
+from kswarms.analysis.figures.files import encode
 from kswarms.analysis.figures.over_n import (
     TIME_SHARES,
     figure_of,
@@ -265,3 +266,12 @@ def test_global_settings_do_not_change(tmp_path: Path) -> None:
     write_figures(tmp_path, tmp_path / "figures")
     assert dict(mpl.rcParams) == before
     assert plt.get_fignums() == []
+
+
+@pytest.mark.parametrize("length", [10, 40, 120])
+def test_the_legend_is_not_wider_than_the_figure(length: int) -> None:
+    conditions = [f"{letter} " * (length // 2) for letter in "abcd"]
+    figure = pucks_over_n(runs_of("fig-x", swarms=(1,), conditions=conditions), "fig-x")
+    encode(figure, "png")
+    box = figure.legends[0].get_window_extent()
+    assert 0 <= box.x0 < box.x1 <= figure.bbox.width
