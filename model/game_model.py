@@ -16,8 +16,8 @@ from kswarms.agents.robot.krembot import Krembot
 from kswarms.model.clock import AFTER_TIMEOUTS, BEFORE_TIMEOUTS, Instant
 from kswarms.model.description.game import Game
 from kswarms.model.game_state import GameState
+from kswarms.model.kernel.arrays import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE
 from kswarms.model.kernel.kernel import Kernel
-from kswarms.model.kernel.percepts import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE
 from kswarms.model.recorder import Recorder, Table, parse_record, policy_rows, result_rows
 
 

@@ -1,92 +1,64 @@
-"""The motion kernel: moves all bodies until a robot must decide (specification, section 2.6). Compiled.
+"""The kernel: moves all bodies until a robot must decide (specification, section 2.6). Compiled.
 
-A control period is: pick-ups and deposits, the percepts of all robots at the same instant,
-decisions, motion. The kernel stops wherever a decision is due, and is called again after it.
+The stages of a control period are pick-ups and deposits, percepts of all robots, decisions, and motion. The
+kernel returns before decisions, and is called again after them.
 """
 
 import math
 from typing import Final
 
-from kswarms.agents.common.arrays import Floats, Integers, Records
 from kswarms.agents.common.jit import compiled
 from kswarms.agents.robot.sensing import wrap
+from kswarms.model.kernel.arrays import Memory
 from kswarms.model.kernel.contacts import JAMMED, part, translate
 from kswarms.model.kernel.neighbours import refresh
 from kswarms.model.kernel.percepts import find_pucks, perceive
 
-# What comes next in a period.
+# Stages of a period.
 PUCKS: Final = 0
 PERCEPTS: Final = 1
 MOTION: Final = 2
 
-_RENEWALS: Final = 50
-"""Lists of neighbours that one period may take: jams send bodies farther only where there is no room."""
+_MOST_REFRESHES: Final = 50
+"""Maximum number of listings of neighbours in one period; only bodies without room need more."""
 
 
 @compiled
-def advance(
-    positions: Floats,
-    robots: Records,
-    world: Records,
-    stations: Records,
-    bases: Floats,
-    work: Records,
-    contacts: Records,
-    pairs: Records,
-    cell_start: Integers,
-    events: Records,
-    tick: int,
-    until: int,
-) -> tuple[int, int]:
-    """Go on from period `tick` to the first decision, but not beyond the start of `until`.
+def advance(m: Memory, tick: int, until: int) -> tuple[int, int]:
+    """Advance from period `tick` to the first decision, but not beyond the start of `until`.
 
-    A period that has begun, with its pick-ups and deposits, comes to its percepts even if it is `until`.
+    If the pick-ups and deposits of a period are done, its percepts follow even in period `until`.
 
     Parameters
     ----------
-    positions : ndarray of float64, shape (n, 2)
-        Centres (m); written.
-    robots : ndarray of `kswarms.agents.robot.state.ROBOT`, shape (n,)
-        Written: headings of those that turn.
-    world : ndarray of `kswarms.model.kernel.arrays.WORLD`, shape (1,)
-        Written: where in its period the game is, and what the neighbour lists hold.
-    stations : ndarray of `kswarms.model.kernel.arrays.STATION`, shape (m,)
-    bases : ndarray of float64, shape (K, 2)
-        Their middles (m).
-    work : ndarray of `kswarms.model.kernel.arrays.WORK`, shape (n,)
+    m : Memory
         Written.
-    contacts : ndarray of `kswarms.model.kernel.arrays.CONTACT`, shape (n, MAX_CONTACTS)
-        Written.
-    pairs, cell_start
-        As in `kswarms.model.kernel.neighbours.refresh`; written.
-    events : ndarray of `kswarms.model.kernel.percepts.EVENT`, shape (n,)
-        Written: what the robots must decide on.
     tick, until : int
-        Control period that it is now; the one at whose start something else is scheduled.
+        Current control period; period of the next scheduled event.
 
     Returns
     -------
     tick, size : int
-        The period reached, and the number of events; with none, it is `until`.
+        Period reached, and the number of events in ``m.events``; without events, it is `until`.
 
     Raises
     ------
     ValueError
-        If bodies overlap that nothing parts.
+        If overlapping bodies cannot be parted.
     """
-    heading, turn_rate = robots["heading"], robots["turn_rate"]
-    forward_x, forward_y = robots["forward_x"], robots["forward_y"]
-    stage = world["stage"]
+    positions, stage = m.positions, m.scalars["stage"]
+    heading, turn_rate = m.robots["heading"], m.robots["turn_rate"]
+    forward_x, forward_y = m.robots["forward_x"], m.robots["forward_y"]
     while tick < until or stage[0] != PUCKS:
         if stage[0] == PUCKS:
             stage[0] = PERCEPTS
-            size = find_pucks(positions, robots, world, stations, bases, events)
+            size = find_pucks(m)
             if size > 0:
                 return tick, size
         if stage[0] == PERCEPTS:
             stage[0] = MOTION
-            _list_neighbours(positions, world, work, pairs, cell_start)
-            size = perceive(positions, robots, world, bases, work, pairs, cell_start, events)
+            refresh(m)
+            size = perceive(m)
             if size > 0:
                 return tick, size
         if tick == until:
@@ -96,42 +68,18 @@ def advance(
                 heading[i] = wrap(heading[i] + turn_rate[i])
                 forward_x[i] = math.cos(heading[i])
                 forward_y[i] = math.sin(heading[i])
-        translate(positions, robots, world, work, contacts, pairs)
-        _part_strangers(positions, world, work, pairs, cell_start)
+        translate(m)
+        _part_unlisted(m)
         stage[0] = PUCKS
         tick += 1
     return tick, 0
 
 
 @compiled
-def _list_neighbours(
-    positions: Floats, world: Records, work: Records, pairs: Records, cell_start: Integers
-) -> bool:
-    """Make the lists of neighbours anew if they are not good any more; return whether they were not."""
-    listed = refresh(
-        positions,
-        world["half"][0],
-        world["pair_reach"][0],
-        world["skin"][0],
-        work["origin_x"],
-        work["origin_y"],
-        pairs,
-        cell_start,
-        work["cell_robots"],
-    )
-    if listed < 0:
-        return False
-    world["n_pairs"][0] = listed
-    return True
-
-
-@compiled
-def _part_strangers(
-    positions: Floats, world: Records, work: Records, pairs: Records, cell_start: Integers
-) -> None:
-    """Part those whom the motion took so far that they came upon bodies that are not on their lists."""
-    for _ in range(_RENEWALS):
-        if not _list_neighbours(positions, world, work, pairs, cell_start):
+def _part_unlisted(m: Memory) -> None:
+    """Part bodies that moved so far that they may overlap bodies outside their lists of neighbours."""
+    for _ in range(_MOST_REFRESHES):
+        if not refresh(m):
             return
-        part(positions, world, work, pairs)
+        part(m)
     raise ValueError(JAMMED)

@@ -1,46 +1,47 @@
-"""The kernel's view of a game: constants of the world, and working memory for each robot."""
+"""Arrays of the kernel. Lengths are in metres, angles in radians, times in control periods."""
 
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from kswarms.agents.body import SENSORS
+from kswarms.agents.common.arrays import Floats, Integers, Records
 
-WORLD: Final = np.dtype(
+SCALARS: Final = np.dtype(
     [
-        ("half", np.float64),  # half the side of the arena (m)
-        ("radius", np.float64),  # of every body (m)
-        ("conflict_reach", np.float64),  # conflict distance, centre to centre (m)
+        ("half", np.float64),  # half the side of the arena
+        ("radius", np.float64),  # of every body
+        ("conflict_reach", np.float64),  # conflict distance, centre to centre
         ("front_cosine", np.float64),  # cosine of the front half-angle
-        ("flight_range", np.float64),  # free distances are cut off there (m)
-        ("active_range", np.float64),  # a sensor is active below it (m)
-        ("ring_reach", np.float64),  # how far from a centre others matter to the ring (m)
-        ("wall_reach", np.float64),  # wall distance, from the centre (m)
-        ("wall_half_angle", np.float64),  # between the rays that look for walls (rad)
-        ("base_range", np.float64),  # the own base is seen within it (m)
-        ("station_radius", np.float64),  # (m)
-        ("base_radius", np.float64),  # (m)
+        ("flight_range", np.float64),  # cut-off of free distances
+        ("active_range", np.float64),  # a sensor is active up to it
+        ("ring_reach", np.float64),  # other robots within it, centre to centre, affect the sensors
+        ("wall_reach", np.float64),  # wall distance, from the centre
+        ("wall_half_angle", np.float64),  # between the rays that detect walls
+        ("base_range", np.float64),  # the own base is visible within it
+        ("station_radius", np.float64),
+        ("base_radius", np.float64),
         ("friction", np.float64),  # Coulomb coefficient
         ("push_share", np.float64),
-        ("pair_reach", np.float64),  # pairs nearer than this are listed (m)
-        ("skin", np.float64),  # what the list allows for motion (m)
+        ("pair_reach", np.float64),  # pairs within it are listed
+        ("skin", np.float64),  # allowance of the list for motion
         ("preempt", np.int64),
-        # What the kernel writes:
-        ("stage", np.int64),  # what comes next in this period
-        ("n_pairs", np.int64),  # pairs listed now
-        ("free", np.float64, (SENSORS,)),  # free distances of one robot (m)
+        # Written by the kernel:
+        ("stage", np.int64),  # next stage of this period
+        ("n_pairs", np.int64),  # pairs listed
+        ("free", np.float64, (SENSORS,)),  # free distances of one robot
     ]
 )
-"""Constants of a game, and the kernel's own state."""
+"""Constants of a game, and scalar state of the kernel."""
 
 STATION: Final = np.dtype([("x", np.float64), ("y", np.float64), ("supply", np.int64)])
-"""A supply station: its middle (m) and the pucks left, negative for no limit."""
+"""A supply station: its centre and the pucks left, negative for no limit."""
 
 PAIR: Final = np.dtype(
     [
-        ("first", np.int64),  # the robot with the lower number
+        ("first", np.int64),  # the robot with the lower row
         ("second", np.int64),
-        ("close_first", np.int64),  # in row k, the k-th pair that is about to touch
+        ("close_first", np.int64),  # row k: the k-th pair that nearly touches
         ("close_second", np.int64),
     ]
 )
@@ -48,32 +49,84 @@ PAIR: Final = np.dtype(
 
 WORK: Final = np.dtype(
     [
-        ("move_x", np.float64),  # displacement in this period (m)
+        ("move_x", np.float64),  # displacement in this period
         ("move_y", np.float64),
-        ("shove_x", np.float64),  # what others add to it; in the relaxation, one pass's correction (m)
+        ("shove_x", np.float64),  # displacement by others; in the relaxation, correction of one pass
         ("shove_y", np.float64),
         ("count", np.int64),  # contacts; in the relaxation, overlaps
         ("queued", np.int64),  # whether the relaxation may move it
-        ("queue", np.int64),  # in row k, the k-th robot that it may move
-        ("origin_x", np.float64),  # position for which the neighbours were listed (m)
+        ("queue", np.int64),  # row k: the k-th robot that the relaxation may move
+        ("origin_x", np.float64),  # position at the last listing of neighbours, NaN before the first
         ("origin_y", np.float64),
-        ("cell_robots", np.int64),  # robots ordered by cell
+        ("cell_robots", np.int64),  # robots ordered by cell, ascending in each cell
         ("found", np.int64),  # robots around one robot
-        ("nearest", np.int64),  # robot ahead
-        ("squared", np.float64),  # its distance, squared (m²)
+        ("nearest", np.int64),  # nearest robot ahead, -1 for none
+        ("squared", np.float64),  # its distance, squared
     ]
 )
-"""Working memory of the kernel, one row for each robot."""
+"""Working memory, one row per robot."""
 
 CONTACT: Final = np.dtype(
     [
         ("x", np.float64),  # unit vector towards the obstacle
         ("y", np.float64),
-        ("allowed", np.float64),  # displacement towards it that is allowed (m)
-        ("blocked", np.float64),  # and that is blocked (m)
+        ("allowed", np.float64),  # allowed displacement towards it
+        ("blocked", np.float64),  # blocked displacement towards it
     ]
 )
 """One contact of a robot."""
 
 MAX_CONTACTS: Final = 12
-"""Contacts a body can have: six discs fit around a disc, and there are walls; the rest is reserve."""
+"""Maximum number of contacts of a body: six discs fit around a disc, and there are walls."""
+
+EVENT: Final = np.dtype(
+    [
+        ("robot", np.int64),
+        ("kind", np.int64),  # one of the constants below
+        ("other", np.int64),  # robot ahead in a conflict; station at a pick-up
+        ("active", np.int64),  # number of active sensors, n'_i of Eq. 5.4
+        ("vacant", np.int64),  # most vacant directions, one bit per sensor
+        ("angle", np.float64),  # from the heading to the robot ahead, or to the own base
+    ]
+)
+"""A decision that a robot must take."""
+
+PICK_UP: Final = 1
+DEPOSIT: Final = 2
+CONFLICT: Final = 3
+HOMING: Final = 4
+WALL: Final = 5
+TURN_DUE: Final = 6
+LEG_DUE: Final = 7
+
+
+class Memory(NamedTuple):
+    """Arrays of one game with n robots, S stations and K swarms.
+
+    Attributes
+    ----------
+    positions : ndarray of float64, shape (n, 2)
+        Centres.
+    robots : ndarray of `kswarms.agents.robot.state.ROBOT`, shape (n,)
+    scalars : ndarray of `SCALARS`, shape (1,)
+    stations : ndarray of `STATION`, shape (S,)
+    bases : ndarray of float64, shape (K, 2)
+        Centres.
+    work : ndarray of `WORK`, shape (n,)
+    contacts : ndarray of `CONTACT`, shape (n, MAX_CONTACTS)
+    pairs : ndarray of `PAIR`, shape (capacity,)
+    cell_start : ndarray of int64, shape (cells² + 1,)
+        Start of each cell in `WORK` ``cell_robots``.
+    events : ndarray of `EVENT`, shape (n,)
+    """
+
+    positions: Floats
+    robots: Records
+    scalars: Records
+    stations: Records
+    bases: Floats
+    work: Records
+    contacts: Records
+    pairs: Records
+    cell_start: Integers
+    events: Records

@@ -1,54 +1,35 @@
-"""Bodies that touch: slide with Coulomb friction, wedges relax (specification, section 2.5).
+"""Contacts of bodies: sliding with friction, relaxation of wedges (specification, section 2.5). Compiled.
 
-A robot that drives into a body or a wall loses the normal part of its motion against it and slides
-along it; the tangential part shrinks by μ times the normal displacement that was blocked. Two that
-drive into each other share the gap that is left in proportion to their speeds. A robot with several
-contacts meets them in the order of what each blocks, the most blocking first, each once; the overlap
-that is left (a wedge) is relaxed (`kswarms.model.kernel.relaxation`). Compiled.
+A robot that drives into a body or a wall loses the normal part of its motion and slides along it; the
+tangential part shrinks by μ times the blocked normal displacement (Coulomb friction). Two robots that drive
+into each other share the gap in proportion to their speeds. A robot with several contacts meets each once,
+the most blocking first; the remaining overlap (a wedge) is relaxed (`kswarms.model.kernel.relaxation`).
 """
 
 import math
 from typing import Final
 
-from kswarms.agents.common.arrays import Floats, Integers, Records
+from kswarms.agents.common.arrays import Integers, Records
 from kswarms.agents.common.jit import compiled
-from kswarms.model.kernel.arrays import MAX_CONTACTS
+from kswarms.model.kernel.arrays import MAX_CONTACTS, Memory
 from kswarms.model.kernel.relaxation import relax
 
 JAMMED: Final = "bodies overlap, and nothing parts them: there are too many, or periods are too long"
 
 
 @compiled
-def translate(
-    positions: Floats, robots: Records, world: Records, work: Records, contacts: Records, pairs: Records
-) -> None:
+def translate(m: Memory) -> None:
     """Move all bodies by one period.
-
-    Parameters
-    ----------
-    positions : ndarray of float64, shape (n, 2)
-        Centres (m); written.
-    robots : ndarray of `kswarms.agents.robot.state.ROBOT`, shape (n,)
-        Who drives where.
-    world : ndarray of `kswarms.model.kernel.arrays.WORLD`, shape (1,)
-        Size of the bodies and the arena, friction and push share.
-    work : ndarray of `kswarms.model.kernel.arrays.WORK`, shape (n,)
-        Written: moves, shoves and numbers of contacts.
-    contacts : ndarray of `kswarms.model.kernel.arrays.CONTACT`, shape (n, MAX_CONTACTS)
-        Written.
-    pairs : ndarray of `kswarms.model.kernel.arrays.PAIR`, shape (capacity,)
-        All pairs that can touch; written: which are close.
 
     Raises
     ------
     ValueError
         If overlaps remain.
     """
-    radius, half, n_pairs = world["radius"][0], world["half"][0], world["n_pairs"][0]
-    friction, push_share = world["friction"][0], world["push_share"][0]
+    positions, robots, work = m.positions, m.robots, m.work
     stride, forward_x, forward_y = robots["stride"], robots["forward_x"], robots["forward_y"]
     move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
-    count = work["count"]
+    count, friction = work["count"], m.scalars["friction"][0]
     n = len(positions)
     fastest = 0.0
     for i in range(n):
@@ -58,43 +39,36 @@ def translate(
         shove_x[i] = 0.0
         shove_y[i] = 0.0
         count[i] = 0
-    _meet_bodies(positions, stride, radius, fastest, push_share, work, contacts, pairs, n_pairs)
-    _meet_walls(positions, radius, half, work, contacts)
+    _meet_bodies(m, fastest)
+    _meet_walls(m)
     crowded = False
     for i in range(n):
         if count[i] > 0:
             crowded = True
-            move_x[i], move_y[i] = _slide(move_x[i], move_y[i], friction, contacts[i], count[i])
+            move_x[i], move_y[i] = _slide(move_x[i], move_y[i], friction, m.contacts[i], count[i])
         positions[i, 0] += move_x[i] + shove_x[i]
         positions[i, 1] += move_y[i] + shove_y[i]
     if crowded:
-        part(positions, world, work, pairs)
+        part(m)
 
 
 @compiled
-def part(positions: Floats, world: Records, work: Records, pairs: Records) -> None:
-    """Relax what overlaps; arguments and errors are those of `translate`."""
-    if relax(positions, world["radius"][0], world["half"][0], work, pairs, world["n_pairs"][0]) < 0:
+def part(m: Memory) -> None:
+    """Relax overlaps; raise a ValueError if overlaps remain."""
+    radius, half, n_pairs = m.scalars["radius"][0], m.scalars["half"][0], m.scalars["n_pairs"][0]
+    if relax(m.positions, radius, half, m.work, m.pairs, n_pairs) < 0:
         raise ValueError(JAMMED)
 
 
 @compiled
-def _meet_bodies(
-    positions: Floats,
-    stride: Floats,
-    radius: float,
-    fastest: float,
-    push_share: float,
-    work: Records,
-    contacts: Records,
-    pairs: Records,
-    n_pairs: int,
-) -> None:
-    """Find the pairs that would overlap, and how much of whose motion each blocks."""
+def _meet_bodies(m: Memory, fastest: float) -> None:
+    """Find the pairs that would overlap, and the part of each motion that is blocked."""
+    positions, work, contacts = m.positions, m.work, m.contacts
     move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
-    count, first, second = work["count"], pairs["first"], pairs["second"]
+    count, first, second = work["count"], m.pairs["first"], m.pairs["second"]
+    stride, radius, push_share = m.robots["stride"], m.scalars["radius"][0], m.scalars["push_share"][0]
     reach = 2.0 * radius + 2.0 * fastest
-    for k in range(n_pairs):
+    for k in range(m.scalars["n_pairs"][0]):
         i = first[k]
         j = second[k]
         if stride[i] == 0.0 and stride[j] == 0.0:
@@ -129,9 +103,10 @@ def _meet_bodies(
 
 
 @compiled
-def _meet_walls(positions: Floats, radius: float, half: float, work: Records, contacts: Records) -> None:
-    """Find who would leave the arena."""
-    move_x, move_y, count = work["move_x"], work["move_y"], work["count"]
+def _meet_walls(m: Memory) -> None:
+    """Find the robots that would leave the arena."""
+    positions, radius, half = m.positions, m.scalars["radius"][0], m.scalars["half"][0]
+    move_x, move_y, count = m.work["move_x"], m.work["move_y"], m.work["count"]
     for i in range(len(positions)):
         for axis in range(2):
             move = move_x[i] if axis == 0 else move_y[i]
@@ -141,7 +116,7 @@ def _meet_walls(positions: Floats, radius: float, half: float, work: Records, co
             if towards > gap:
                 nx = sign if axis == 0 else 0.0
                 ny = sign if axis == 1 else 0.0
-                _add_contact(contacts[i], count, i, nx, ny, towards, towards - gap)
+                _add_contact(m.contacts[i], count, i, nx, ny, towards, towards - gap)
 
 
 @compiled
@@ -159,7 +134,7 @@ def _add_contact(
 
 @compiled
 def _slide(x: float, y: float, friction: float, contacts: Records, count: int) -> tuple[float, float]:
-    """Take from a robot's motion (x, y) what its contacts block, and what their friction costs."""
+    """Return the motion (x, y) of a robot without its blocked parts and the loss by friction."""
     normal_x, normal_y = contacts["x"], contacts["y"]
     allowed, blocked = contacts["allowed"], contacts["blocked"]
     for _ in range(count):
@@ -167,7 +142,7 @@ def _slide(x: float, y: float, friction: float, contacts: Records, count: int) -
         for k in range(1, count):
             if blocked[k] > blocked[worst]:
                 worst = k
-        blocked[worst] = -1.0  # met: not to be found again
+        blocked[worst] = -1.0  # done
         nx = normal_x[worst]
         ny = normal_y[worst]
         normal = x * nx + y * ny

@@ -1,4 +1,4 @@
-"""The compiled kernel of one game, with the memory it works in."""
+"""The kernel of one game: allocates its memory and calls the compiled code."""
 
 import math
 from collections.abc import Callable
@@ -12,12 +12,20 @@ from kswarms.agents.robot.state import RobotStates
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game
 from kswarms.model.kernel.advance import advance
-from kswarms.model.kernel.arrays import CONTACT, MAX_CONTACTS, PAIR, STATION, WORK, WORLD
+from kswarms.model.kernel.arrays import (
+    CONTACT,
+    EVENT,
+    MAX_CONTACTS,
+    PAIR,
+    SCALARS,
+    STATION,
+    WORK,
+    Memory,
+)
 from kswarms.model.kernel.neighbours import room_for_pairs
-from kswarms.model.kernel.percepts import EVENT
 
 _MOST_CELLS: Final = 1024
-"""Rows of the grid of cells at most: that of a vast arena has larger cells, not more of them."""
+"""Maximum number of grid rows; larger arenas get larger cells."""
 
 
 class Kernel:
@@ -26,70 +34,65 @@ class Kernel:
     Parameters
     ----------
     game : Game
-        What is played.
+        The game.
     arena : Arena
-        Where.
+        Its arena.
     states : RobotStates
-        The robots; written.
+        State arrays of the robots; written.
 
     Attributes
     ----------
-    events : ndarray of `kswarms.model.kernel.percepts.EVENT`, shape (n,)
-        What the robots must decide on since the last call of `advance`.
+    memory : Memory
+        Arrays of the compiled code.
+    events : ndarray of `kswarms.model.kernel.arrays.EVENT`, shape (n,)
+        Decisions due since the last call of `advance`.
     fields : list of memoryview, shape (n,)
-        Its fields, in their order: to read a few numbers, faster than the array.
-    supply : ndarray of int64, shape (stations,)
+        Fields of the events, in order; reading single numbers is faster than from the array.
+    supply : ndarray of int64, shape (S,)
         Pucks left at each station, −1 for no limit.
     advance : callable
         ``advance(tick, until) -> (tick, size)`` moves the bodies from period `tick` to the next decision, at
-        most to the start of `until`; returns the period reached, and the number of `events` there.
+        most to the start of `until`; it returns the period reached and the number of `events`.
     """
 
     def __init__(self, game: Game, arena: Arena, states: RobotStates) -> None:
         n = len(states.positions)
-        self.events: Records = np.zeros(n, dtype=EVENT)
-        self.fields = [self.events[name].data for name in EVENT.names or ()]
+        scalars = make_scalars(game, arena)
         stations: Records = np.zeros(len(arena.stations), dtype=STATION)
         stations["x"], stations["y"] = arena.stations.T
         stations["supply"] = game.supply or -1
-        self.supply: Integers = stations["supply"]
-        world = make_world(game, arena)
-        pair_reach = float(world["pair_reach"][0])
+        pair_reach = float(scalars["pair_reach"][0])
         cells = max(1, min(_MOST_CELLS, int(2 * arena.half / pair_reach)))
         work: Records = np.zeros(n, dtype=WORK)
         work["origin_x"] = np.nan  # no neighbours listed yet
-        arguments = (
-            states.positions,
-            states.robots,
-            world,
-            stations,
-            arena.bases,
-            work,
-            np.zeros((n, MAX_CONTACTS), dtype=CONTACT),
-            np.zeros(room_for_pairs(n, pair_reach, game.body.radius), dtype=PAIR),
-            np.zeros(cells * cells + 1, dtype=np.int64),
-            self.events,
+        self.memory = Memory(
+            positions=states.positions,
+            robots=states.robots,
+            scalars=scalars,
+            stations=stations,
+            bases=arena.bases,
+            work=work,
+            contacts=np.zeros((n, MAX_CONTACTS), dtype=CONTACT),
+            pairs=np.zeros(room_for_pairs(n, pair_reach, game.body.radius), dtype=PAIR),
+            cell_start=np.zeros(cells * cells + 1, dtype=np.int64),
+            events=np.zeros(n, dtype=EVENT),
         )
-        advance(
-            *arguments, 0, 0
-        )  # compiles, or loads what is cached; at the start of period 0 it does nothing
-        # The dispatcher of a compiled function looks up the types of all arguments at each call, which here
-        # takes longer than the call. They never change in a game, so the machine code is called directly.
+        self.events = self.memory.events
+        self.fields = [self.events[name].data for name in EVENT.names or ()]
+        self.supply: Integers = stations["supply"]
+        advance(self.memory, 0, 0)  # compiles, or loads the cached code; moves nothing
+        # The dispatcher of a compiled function looks up the types of all arguments at each call, which takes
+        # longer than the call. They never change in a game, so the machine code is called directly.
         machine_code = next(iter(advance.overloads.values())).entry_point  # type: ignore[attr-defined]
-        self.advance: Callable[[int, int], tuple[int, int]] = partial(machine_code, *arguments)
+        self.advance: Callable[[int, int], tuple[int, int]] = partial(machine_code, self.memory)
 
 
-def make_world(game: Game, arena: Arena) -> Records:
-    """Return the constants of a game as the kernel reads them.
-
-    Returns
-    -------
-    ndarray of `kswarms.model.kernel.arrays.WORLD`, shape (1,)
-    """
+def make_scalars(game: Game, arena: Arena) -> Records:
+    """Return the constants of a game, ndarray of `kswarms.model.kernel.arrays.SCALARS`, shape (1,)."""
     parameters, body = game.parameters, game.body
     radius, scale = body.radius, body.sensing_scale
     fastest = body.top_speed * parameters.period * max(max(s.drive, s.drive_action) for s in game.swarms)
-    world: Records = np.zeros(1, dtype=WORLD)
+    scalars: Records = np.zeros(1, dtype=SCALARS)
     values = {
         "half": arena.half,
         "radius": radius,
@@ -108,10 +111,10 @@ def make_world(game: Game, arena: Arena) -> Records:
         "preempt": parameters.preempt,
     }
     for name, value in values.items():
-        world[name] = value
-    # Two that meet head on close in by two strides in a period; relaxation may move each by three more.
+        scalars[name] = value
+    # Two robots that meet head on approach by two strides in a period; relaxation may add three each.
     touching = 2 * radius + 8 * fastest
-    world["pair_reach"] = np.maximum(world["conflict_reach"], touching) + world["skin"]
-    farthest = np.maximum(world["flight_range"], world["active_range"])
-    world["ring_reach"] = 2 * radius + farthest + world["skin"] / 2
-    return world
+    scalars["pair_reach"] = np.maximum(scalars["conflict_reach"], touching) + scalars["skin"]
+    farthest = np.maximum(scalars["flight_range"], scalars["active_range"])
+    scalars["ring_reach"] = 2 * radius + farthest + scalars["skin"] / 2
+    return scalars

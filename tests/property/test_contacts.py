@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -15,8 +14,7 @@ from kswarms.agents.common.arrays import Floats, Integers
 from kswarms.agents.robot.state import ACTION
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.description.parameters import PRESETS
-from kswarms.model.kernel.arrays import WORLD
-from kswarms.model.kernel.percepts import CONFLICT, HOMING, PICK_UP
+from kswarms.model.kernel.arrays import CONFLICT, HOMING, PICK_UP
 from tests.reference.contacts import Ground, translate
 from tests.reference.states import Scene, clone, make_scene, mirrored, scenes, unit
 
@@ -230,13 +228,11 @@ def test_what_cannot_be_parted_is_told() -> None:
     # A hundred bodies that have grown since they were placed: they would cover more than there is.
     side = np.linspace(R - 1, 1 - R, 10)
     scene = make_scene(game_of(100), np.array([(x, y) for x in side for y in side]), 0.0, STRIDE)
-    advance = scene.kernel().advance
-    assert isinstance(advance, partial)
-    world = next(array for array in advance.args if array.dtype == WORLD)
-    world["radius"] = 0.11
-    assert advance(0, 1)[0] == 0  # some perceive something, and decide nothing
+    kernel = scene.kernel()
+    kernel.memory.scalars["radius"] = 0.11
+    assert kernel.advance(0, 1)[0] == 0  # some perceive something, and decide nothing
     with pytest.raises(ValueError, match="nothing parts them"):
-        advance(0, 1)
+        kernel.advance(0, 1)
 
 
 @settings(deadline=None, max_examples=20)

@@ -1,6 +1,5 @@
 """The compiled kernel does what the plain reference does: on generated states, and through whole games."""
 
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,8 +11,7 @@ from kswarms.agents.robot.state import IDLE, RobotStates
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.description.parameters import PRESETS, Parameters
 from kswarms.model.game_model import GameModel
-from kswarms.model.kernel.arrays import WORLD
-from kswarms.model.kernel.percepts import CONFLICT, EVENT, HOMING, LEG_DUE, PICK_UP
+from kswarms.model.kernel.arrays import CONFLICT, EVENT, HOMING, LEG_DUE, PICK_UP
 from tests.reference.compare import assert_same_events, assert_same_state, compared
 from tests.reference.kernel import Event, ReferenceKernel, State
 from tests.reference.states import Scene, make_scene, scenes
@@ -51,9 +49,7 @@ def play_compared(game: Game, seed: int, spoil_skin: float | None = None) -> tup
     kernel = model._kernel
     calls: list[int] = []
     if spoil_skin is not None:
-        assert isinstance(kernel.advance, partial)
-        world = next(array for array in kernel.advance.args if array.dtype == WORLD)
-        world["skin"] = spoil_skin
+        kernel.memory.scalars["skin"] = spoil_skin
     kernel.advance = compared(kernel, ReferenceKernel(game, model.arena), model.states, calls)
     model.play()
     return model, calls

@@ -7,8 +7,8 @@ import numpy as np
 
 from kswarms.agents.common.arrays import Records
 from kswarms.agents.robot.state import RobotStates
+from kswarms.model.kernel.arrays import CONFLICT, HOMING, PICK_UP
 from kswarms.model.kernel.kernel import Kernel
-from kswarms.model.kernel.percepts import CONFLICT, HOMING, PICK_UP
 from tests.reference.kernel import Event, ReferenceKernel, State
 
 PRECISION = 1e-9

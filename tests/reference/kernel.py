@@ -14,7 +14,7 @@ from kswarms.agents.common.arrays import Floats, Integers
 from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, HOMING_ERROR, LEG, LEG_OVER, TURN, RobotStates
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game
-from kswarms.model.kernel.percepts import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE, WALL
+from kswarms.model.kernel.arrays import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE, WALL
 from tests.reference.contacts import Ground, offsets, translate
 
 BEARINGS = 2 * math.pi / SENSORS * np.arange(SENSORS)
