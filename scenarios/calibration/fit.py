@@ -81,18 +81,27 @@ class Setup(Checked):
             raise InputError("population", self.population, "must be at least 4, or 0 for the usual number")
         return self
 
+    @property
+    def start(self) -> Candidate:
+        """Start values of the free parameters."""
+        return {name: START[name] for name in self.free}
 
-def error_of(shares: Floats, target: Floats) -> float:
+
+def error_of(shares: Floats, target: Floats) -> Floats:
     """Return the mean absolute error over cells (percentage points).
 
     Parameters
     ----------
-    shares : ndarray of float64, shape (cells, seeds)
-        Share of learners that learned to attack.
+    shares : ndarray of float64, shape (…, cells)
+        Share of learners that learned to attack, mean over seeds.
     target : ndarray of float64, shape (cells,)
         Published shares (percent).
+
+    Returns
+    -------
+    ndarray of float64, shape (…)
     """
-    return float(np.abs(100.0 * shares.mean(axis=1) - target).mean())
+    return np.asarray(np.abs(100.0 * shares - target).mean(axis=-1))
 
 
 def calibrate(
@@ -139,9 +148,8 @@ def calibrate(
         if n not in rows:
             raise InputError("densities", n, f"must be among {', '.join(map(str, rows))}, as in Table 6.1")
     shares = _open(setup, play, out, fresh)
-    start = _start(setup)
+    fitted = start = setup.start
     trace: dict[str, Any] = {"setup": setup.model_dump(mode="json"), "start": start, "generations": []}
-    fitted = start
     for generation in _search(setup, target, shares):
         trace["generations"].append(generation)
         write_json(out / TRACE, trace)
@@ -175,24 +183,17 @@ def summary(trace: dict[str, Any]) -> list[str]:
     ]
 
 
-def _start(setup: Setup) -> Candidate:
-    return {name: START[name] for name in setup.free}
-
-
 def _open(setup: Setup, play: Play, out: Path, fresh: bool) -> Shares:
     """Create the directory and return the shares in it."""
     comparable = setup.model_dump(mode="json", include={"densities", "seeds", "population"})
-    comparable["start"] = _start(setup)
+    comparable["start"] = setup.start
     make_directory(out)
-    try:
-        if fresh:
-            for name in (_SHARES, TRACE):
-                (out / name).unlink(missing_ok=True)
-        shares = Shares(out / _SHARES, comparable, play)
-        remove_temporary_files(out)
-        shares.save()
-    except OSError as error:
-        raise InputError("out", str(out), f"must be a writable directory ({error.strerror})") from error
+    if fresh:
+        for name in (_SHARES, TRACE):
+            (out / name).unlink(missing_ok=True)
+    shares = Shares(out / _SHARES, comparable, play)
+    remove_temporary_files(out)
+    shares.save()
     return shares
 
 
@@ -209,13 +210,13 @@ def _search(
         "seed": math.nan,  # leaves numpy's global generator alone
         "verbose": -9,
     } | ({"popsize": setup.population} if setup.population else {})
-    strategy = cma.CMAEvolutionStrategy(to_place(_start(setup)), SPREAD, options)
+    strategy = cma.CMAEvolutionStrategy(to_place(setup.start), SPREAD, options)
     for generation in range(setup.generations):
         first_seed = FIT_SEED + generation * setup.seeds
         places = strategy.ask()
         candidates = [to_candidate(setup.free, place) for place in places]
         measured = shares.measure(candidates, cells, range(first_seed, first_seed + setup.seeds))
-        errors = [error_of(each, wanted) for each in measured]
+        errors = [float(error_of(each.mean(axis=1), wanted)) for each in measured]
         strategy.tell(places, errors)
         yield {
             "first_seed": first_seed,
@@ -245,13 +246,13 @@ def validate(start: Floats, fitted: Floats, target: Floats) -> dict[str, float]:
     both = np.stack([start, fitted]).transpose(2, 0, 1)  # seeds, candidates, cells
 
     def gains(means: Floats) -> Floats:
-        errors = np.abs(100.0 * means - target).mean(axis=-1)
-        return np.asarray(errors[:, 0] - errors[:, 1])
+        return error_of(means[:, 0], target) - error_of(means[:, 1], target)
 
     gain = bootstrap_interval(both, gains)
+    start_error, fitted_error = error_of(both.mean(axis=0), target)
     return {
-        "start_error": error_of(start, target),
-        "fitted_error": error_of(fitted, target),
+        "start_error": float(start_error),
+        "fitted_error": float(fitted_error),
         "gain": gain.estimate,
         "gain_low": gain.low,
         "gain_high": gain.high,

@@ -20,10 +20,12 @@ def conflicts(
         int | None, typer.Option(help="Conflicts of this robot only, from 0. [default: of all]")
     ] = None,
     begin: Annotated[
-        float | None,
-        typer.Option("--from", help="First instant (s of the measured game). [default: learning included]"),
-    ] = None,
-    end: Annotated[float | None, typer.Option("--to", help="Last instant (s).")] = None,
+        float,
+        typer.Option(
+            "--from", show_default="learning included", help="First instant (s of the measured game)."
+        ),
+    ] = -math.inf,
+    end: Annotated[float, typer.Option("--to", show_default="the end", help="Last instant (s).")] = math.inf,
 ) -> None:
     """Play a game again and list its conflicts: robots, place, knowledge, action and reward.
 
@@ -32,17 +34,16 @@ def conflicts(
     found = resolve_run(what, run, condition, n, seed)
     if robot is not None and not 0 <= robot < found.n:
         raise InputError("robot", robot, f"must be in 0 to {found.n - 1}")
-    first, last = -math.inf if begin is None else begin, math.inf if end is None else end
-    if math.isnan(first):
+    if math.isnan(begin):
         raise InputError("from", begin, "must be a number of seconds")
-    if not first <= last:
-        raise InputError("to", end, f"must be a number of seconds, at least {first:g}")
+    if not begin <= end:
+        raise InputError("to", end, f"must be a number of seconds, at least {begin:g}")
     from kswarms.scenarios.watch.conflicts import HEADINGS, conflict_cells, conflicts_of
 
     rows = [
         conflict_cells(conflict, found.game.learning)
         for conflict in conflicts_of(found)
         if (robot is None or conflict.row["robot"] == robot)
-        and first <= conflict.row["start"] - found.game.learning <= last
+        and begin <= conflict.row["start"] - found.game.learning <= end
     ]
     print_columns([HEADINGS, *rows], left=range(len(HEADINGS)))

@@ -32,25 +32,17 @@ def complete_scenario_ids(incomplete: str) -> list[tuple[str, str]]:
 
 
 def parse_directory(text: str) -> Path:
-    """Return the path of a directory.
-
-    Raises
-    ------
-    InputError
-        If the text is empty, for example from an unset shell variable; it would mean the current directory.
-    """
-    if not text:
+    """Return the path of a directory."""
+    if not text:  # for example an unset shell variable; it would mean the current directory
         raise InputError("out", text, "must be the path of a directory")
     return Path(text)
 
 
+_WATCHED: Final = "Scenario or table of `kswarms list`, or my.toml; with --run, a results directory."
 Watched = Annotated[
     str | None,
     typer.Argument(
-        metavar="ID|DIR",
-        help="Scenario or table of `kswarms list`, or my.toml; with --run, a results directory. "
-        f"[default: {FIRST_SCENARIO}]",
-        autocompletion=complete_ids,
+        metavar="ID|DIR", help=f"{_WATCHED} [default: {FIRST_SCENARIO}]", autocompletion=complete_ids
     ),
 ]
 RunDigest = Annotated[
@@ -74,13 +66,7 @@ Seed = Annotated[
 
 
 def resolve_source(what: str | None, run: str) -> str | Run:
-    """Return the id or file of a scenario, or the run of a results directory if a digest is given.
-
-    Raises
-    ------
-    InputError
-        If no such run is found.
-    """
+    """Return the id or file of a scenario, or the run of a results directory if a digest is given."""
     if not run:
         return what or FIRST_SCENARIO
     if what is None:
@@ -91,13 +77,7 @@ def resolve_source(what: str | None, run: str) -> str | Run:
 
 
 def resolve_run(what: str | None, run: str, condition: str | None, n: int | None, seed: int | None) -> Run:
-    """Return a run of a results directory, by its digest, or a run of a scenario.
-
-    Raises
-    ------
-    InputError
-        If no such run exists, or a digest is combined with `condition`, `n` or `seed`.
-    """
+    """Return a run of a results directory, by its digest, or a run of a scenario."""
     start = resolve_source(what, run)
     if isinstance(start, Run):
         for field, value in (("condition", condition), ("n", n), ("seed", seed)):

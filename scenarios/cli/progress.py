@@ -22,13 +22,7 @@ _LINE_EVERY: Final = 1.0
 
 
 class Count:
-    """Progress of a sweep. Long runs come first, so the time left is estimated from CPU time, not from runs.
-
-    Parameters
-    ----------
-    runs : sequence of Run
-        All runs of the sweep.
-    """
+    """Progress of a sweep. Long runs come first, so the time left is estimated from their CPU time."""
 
     def __init__(self, runs: Sequence[Run]) -> None:
         self.total = len(runs)
@@ -57,17 +51,7 @@ class Count:
 
 
 def show_progress(played: Iterable[Result], runs: Sequence[Run], kind: Kind) -> Iterator[Count]:
-    """Show the progress of a sweep on standard error; yield the count after each run.
-
-    Parameters
-    ----------
-    played : iterable of Result
-        Runs as they finish.
-    runs : sequence of Run
-        All runs of the sweep.
-    kind : {'bar', 'json', 'none'}
-        How; nothing is shown without runs.
-    """
+    """Show the progress of a sweep on standard error; yield the count after each of the `played` runs."""
     count = Count(runs)
     show = {"bar": _bar, "json": _json_lines, "none": _nothing}[kind if runs else "none"]
     with show(count) as report:
@@ -118,21 +102,10 @@ def _bar(count: Count) -> Iterator[Callable[[str], None]]:
 
 
 def track(steps: Iterable[_Step], doing: str, total: int) -> Iterable[_Step]:
-    """Yield steps and show a progress bar on standard error if that is a terminal.
-
-    Parameters
-    ----------
-    steps : iterable
-        The steps.
-    doing : str
-        Label of the bar.
-    total : int
-        Number of steps.
-    """
+    """Yield `total` steps and show a progress bar on standard error if that is a terminal."""
     from rich import progress
     from rich.console import Console
 
     console = Console(stderr=True)
-    return progress.track(
-        steps, doing, total=total, console=console, transient=True, disable=not console.is_terminal
-    )
+    hidden = not console.is_terminal
+    return progress.track(steps, doing, total=total, console=console, transient=True, disable=hidden)

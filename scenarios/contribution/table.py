@@ -74,19 +74,12 @@ def write_table(directory: Path, rows: Sequence[dict[str, Any]]) -> Path:
 
 
 def find_row(directory: Path, run: str) -> dict[str, Any] | None:
-    """Return a row of the table that compares a run, by its digest; None without such a row or table.
-
-    Raises
-    ------
-    InputError
-        If the table cannot be read.
-    """
+    """Return a row of the table that compares a run, by its digest; None without such a row or table."""
     path = directory / FILE
     if not path.is_file():
         return None
-    columns = ["scenario", "condition", "n", "seed", "robot", "absent_from", "run", "run_without"]
     try:
-        table = pq.read_table(path, columns=columns, schema=SCHEMA)
+        table = pq.read_table(path, schema=SCHEMA)
     except (OSError, ValueError) as error:  # every error of pyarrow is one of these
         raise InputError("results", str(directory), f"has a {FILE} that cannot be read") from error
     rows: list[dict[str, Any]] = table.to_pylist()

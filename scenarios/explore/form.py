@@ -61,13 +61,7 @@ class Form(NamedTuple):
         return self._replace(swarms=(*self.swarms[:k], self.swarms[k] | changes, *self.swarms[k + 1 :]))
 
     def game(self) -> Game:
-        """Return the game.
-
-        Raises
-        ------
-        InputError
-            If a value is invalid.
-        """
+        """Return the game; raise `InputError` if a value is invalid."""
         if isinstance(self.seed, bool) or not isinstance(self.seed, int) or self.seed < 0:
             raise InputError("seed", self.seed, "must be a whole number ≥ 0")
         rules = tuple(SwarmRule(**swarm) for swarm in self.swarms)
@@ -76,13 +70,7 @@ class Form(NamedTuple):
 
 
 def with_parameter(text: str, name: str, value: float) -> str:
-    """Return the shortest text of parameters in which one parameter has another value.
-
-    Raises
-    ------
-    InputError
-        If the text cannot be parsed, or the value is invalid.
-    """
+    """Return the shortest text of parameters in which one parameter has another value."""
     return text_of(parse_parameters(text).replace(**{name: value}))
 
 

@@ -20,11 +20,6 @@ _STRIDE: Final = 5.0
 class Playback:
     """A game that is played, paused and rewound.
 
-    Parameters
-    ----------
-    player : Player
-        The game.
-
     Attributes
     ----------
     player : Player
@@ -120,18 +115,7 @@ class Playback:
             self.player.to_next_conflict(robot)
 
     def tick(self, elapsed: float) -> bool:
-        """Move the game.
-
-        Parameters
-        ----------
-        elapsed : float
-            Time since the last call (s).
-
-        Returns
-        -------
-        bool
-            Whether the game has moved.
-        """
+        """Move the game after a time (s) since the last call; return whether it has moved."""
         player = self.player
         if not self.active:
             return False

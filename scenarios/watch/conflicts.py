@@ -68,11 +68,6 @@ class ConflictReader:
 
     A robot reports its last conflict, learns from it, and only then chooses again. So its knowledge follows
     from the rewards recorded before.
-
-    Parameters
-    ----------
-    model : GameModel
-        A game that records conflicts.
     """
 
     def __init__(self, model: GameModel) -> None:
@@ -109,13 +104,7 @@ class ConflictReader:
 
 
 def conflicts_of(run: Run) -> list[WatchedConflict]:
-    """Play a run and return its conflicts, learning included, sorted by start.
-
-    Raises
-    ------
-    RunError
-        If the game fails.
-    """
+    """Play a run and return its conflicts, learning included, sorted by start."""
     with finished_game(run, "conflicts") as model:
         found = ConflictReader(model).read()
         return sorted(found, key=lambda conflict: (conflict.row["start"], conflict.row["robot"]))
@@ -128,15 +117,7 @@ HEADINGS: Final = (
 
 
 def conflict_cells(conflict: WatchedConflict, begin: float) -> list[str]:
-    """Return a conflict as the cells of a table.
-
-    Parameters
-    ----------
-    conflict : WatchedConflict
-        The conflict.
-    begin : float
-        Start of the measured game (s), the zero of the printed times.
-    """
+    """Return a conflict as the cells of a table; printed times start at `begin` (s)."""
     row, x, y = conflict.row, conflict.row["x"], conflict.row["y"]
     return [
         f"{row['start'] - begin:.1f}",

@@ -80,17 +80,12 @@ class Sample(NamedTuple):
 class Player:
     """Plays a game step by step. Its methods are thread-safe.
 
-    Parameters
+    Attributes
     ----------
     game : Game
         The game.
     seed : int
         Seed of the run, ≥ 0.
-
-    Attributes
-    ----------
-    game : Game
-    seed : int
     model : GameModel
         The running game; `seek` replaces it when it rewinds.
     conflicts : deque of WatchedConflict
@@ -175,12 +170,7 @@ class Player:
             self._play_to(self._steps + max(1, round(seconds / self.game.parameters.period)))
 
     def seek(self, time: float) -> None:
-        """Go to an instant, forwards or backwards; stop at the end of the game.
-
-        Parameters
-        ----------
-        time : float
-            Time of the measured game, negative during learning (s).
+        """Go to an instant (s, as `time`), forwards or backwards; stop at the end of the game.
 
         Raises
         ------

@@ -56,7 +56,7 @@ def trace_of(out: Path) -> dict[str, Any]:
 
 def test_the_error_compares_means_over_seeds() -> None:
     shares = np.array([[0.1, 0.3], [0.5, 0.5], [1.0, 0.0]])
-    assert error_of(shares, np.array([10.0, 65.0, 50.0])) == pytest.approx((10 + 15 + 0) / 3)
+    assert error_of(shares.mean(axis=1), np.array([10.0, 65.0, 50.0])) == pytest.approx((10 + 15 + 0) / 3)
 
 
 def test_the_search_finds_the_values_behind_the_table(tmp_path: Path) -> None:
