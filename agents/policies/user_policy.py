@@ -2,6 +2,7 @@
 
 import inspect
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from typing import Any
 
 from kswarms.agents.common.errors import InputError
@@ -27,7 +28,8 @@ def check_factory(reference: str, make: Callable[..., Any], arguments: Mapping[s
             raise InputError(f"policy.{name}", None, "is required")
 
 
-def parameters_of(make: Callable[..., Any]) -> list[inspect.Parameter]:
+@lru_cache(maxsize=64)
+def parameters_of(make: Callable[..., Any]) -> tuple[inspect.Parameter, ...]:
     """Return the parameters of a class or factory, except those that a partial has fixed."""
     fixed = getattr(make, "keywords", {})
-    return [p for name, p in inspect.signature(make).parameters.items() if name not in fixed]
+    return tuple(p for name, p in inspect.signature(make).parameters.items() if name not in fixed)
