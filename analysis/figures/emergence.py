@@ -4,7 +4,8 @@ Choices and Q are drawn from the conflicts of one game: rows of `conflicts.parqu
 table (`model.datacollector.get_table_dataframe("conflicts")`). Final Q is drawn from `robots.parquet`.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from itertools import cycle
 
 import pandas as pd
 from matplotlib.axes import Axes
@@ -32,10 +33,10 @@ def choices_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
     swarms, robots = choices(conflicts), choices(conflicts, by=["robot"])
     actions = sorted(set(swarms["action"]))
     if len(actions) == 2:  # the two shares add up to 1
-        swarms = swarms[swarms["action"] == actions[0]]
+        del actions[1]
 
     def draw(axes: Axes, bandit: tuple[int, int]) -> None:
-        _draw_over_time(axes, _of_bandit(robots, bandit), _of_bandit(swarms, bandit), "share")
+        _draw_over_time(axes, _of_bandit(robots, bandit), _of_bandit(swarms, bandit), "share", actions)
         axes.set_ylim(-0.02, 1.02)
 
     return _panels(swarms, draw, title, "share of the choices")
@@ -56,9 +57,10 @@ def values_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
     """
     robots = arm_values(conflicts)
     means = robots.groupby([*BANDIT, "action", "time"])["q"].mean().reset_index()
+    actions = sorted(set(means["action"]))
 
     def draw(axes: Axes, bandit: tuple[int, int]) -> None:
-        _draw_over_time(axes, _of_bandit(robots, bandit), _of_bandit(means, bandit), "q")
+        _draw_over_time(axes, _of_bandit(robots, bandit), _of_bandit(means, bandit), "q", actions)
 
     return _panels(means, draw, title, "Q (reward per second)")
 
@@ -67,11 +69,16 @@ def _of_bandit(rows: pd.DataFrame, bandit: tuple[int, int]) -> pd.DataFrame:
     return rows[(rows["swarm"] == bandit[0]) & (rows["opponent_swarm"] == bandit[1])]
 
 
-def _draw_over_time(axes: Axes, robots: pd.DataFrame, swarm: pd.DataFrame, quantity: str) -> None:
-    for colour, action in zip(CONDITION_COLOURS, sorted(set(swarm["action"])), strict=False):
+def _draw_over_time(
+    axes: Axes, robots: pd.DataFrame, swarm: pd.DataFrame, quantity: str, actions: Sequence[str]
+) -> None:
+    """Draw the curves of a bandit; each action has the same colour in all panels."""
+    for colour, action in zip(cycle(CONDITION_COLOURS), actions, strict=False):
         for _, of_robot in robots[robots["action"] == action].groupby("robot"):
             axes.plot(of_robot["time"], of_robot[quantity], color=colour, linewidth=0.6, alpha=0.35)
         of_swarm = swarm[swarm["action"] == action]
+        if of_swarm.empty:
+            continue
         axes.plot(of_swarm["time"], of_swarm[quantity], color=colour, linewidth=2.5, label=action)
 
 

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from textwrap import fill
-from typing import Final
+from typing import Any, Final
 
 import matplotlib as mpl
 import pandas as pd
@@ -142,16 +142,19 @@ def sheet(title: str, width: float = 7.0, height: float = 4.9) -> Iterator[Figur
 
 
 def legend_below(figure: Figure, title: str = "") -> None:
-    """Put the legend of the first axes below all axes."""
-    handles, labels = figure.axes[0].get_legend_handles_labels()
+    """Put one legend of all axes below them."""
+    entries: dict[str, Any] = {}
+    for axes in figure.axes:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            entries.setdefault(label, handle)
     width = figure.get_figwidth() - _LEGEND_LINE
-    column = _LEGEND_LINE + _LETTER * max(map(len, labels), default=0)
+    column = _LEGEND_LINE + _LETTER * max(map(len, entries), default=0)
     figure.legend(
-        handles,
-        [fill(label, width=int(width / _LETTER), break_on_hyphens=False) for label in labels],
+        list(entries.values()),
+        [fill(label, width=int(width / _LETTER), break_on_hyphens=False) for label in entries],
         title=title,
         loc="outside lower center",
-        ncols=max(1, min(len(labels), 3, int(figure.get_figwidth() / column))),
+        ncols=max(1, min(len(entries), 3, int(figure.get_figwidth() / column))),
         handlelength=3.5,
     )
 

@@ -9,9 +9,8 @@ from tests.helpers.result_rows import learning_conflicts, robots
 def test_choices_and_q_are_drawn_with_a_panel_for_each_bandit() -> None:
     (axes,) = choices_figure(learning_conflicts(), "t").axes
     assert axes.get_title() == "S2 against S1"
-    assert [text.get_text() for text in axes.figure.legends[0].get_texts()] == [
-        "fight"
-    ]  # the other is the rest
+    legend = [text.get_text() for text in axes.figure.legends[0].get_texts()]
+    assert legend == ["fight"]  # the other share is the rest
     (axes,) = values_figure(learning_conflicts(), "t").axes
     assert [text.get_text() for text in axes.figure.legends[0].get_texts()] == ["fight", "flight"]
     assert axes.get_ylabel() == "Q (reward per second)"
@@ -25,6 +24,17 @@ def test_three_actions_are_all_drawn() -> None:
     rows.loc[2, "action"] = "wait"
     figure = choices_figure(rows)
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["fight", "flight", "wait"]
+
+
+def test_an_action_has_the_same_colour_in_all_panels() -> None:
+    rows = learning_conflicts()
+    rows.loc[rows["robot"] == 2, ["swarm", "action"]] = [1, "wait"]
+    figure = values_figure(rows.assign(q=0.3))
+    colours = [{line.get_label(): line.get_color() for line in axes.lines} for axes in figure.axes]
+    names = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert names == {"fight", "flight", "wait"}
+    for name in names:
+        assert len({panel[name] for panel in colours if name in panel}) == 1
 
 
 def test_preferences_are_drawn_robot_by_robot() -> None:
