@@ -1,4 +1,4 @@
-"""Results made up so that claims on them hold, fail or are in doubt, and the verdicts on such claims."""
+"""Synthetic results for which claims hold, fail or are undecided, and the verdicts on them."""
 
 from collections.abc import Sequence
 from typing import Any

@@ -1,4 +1,4 @@
-"""Rows of result tables made up for tests."""
+"""Synthetic rows of result tables."""
 
 import math
 from collections.abc import Iterable

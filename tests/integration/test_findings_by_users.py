@@ -1,4 +1,4 @@
-"""The page about findings, as a user would follow it: its file, its test, its command."""
+"""The documentation page about findings, followed step by step: its file, test and command."""
 
 import re
 from pathlib import Path
@@ -20,7 +20,7 @@ def block(name: str) -> str:
 
 
 @pytest.mark.slow
-def test_three_lines_assert_a_finding(
+def test_a_test_of_three_lines_asserts_a_finding(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)

@@ -1,4 +1,4 @@
-"""Utilities measured on games that were played and recorded (section 1.3)."""
+"""Utilities of recorded games (section 1.3)."""
 
 from pathlib import Path
 
@@ -33,7 +33,7 @@ def played(game: Game, record: str = "conflicts") -> GameModel:
     return model
 
 
-def test_utilities_are_those_of_the_states_that_were_sampled() -> None:
+def test_utilities_agree_with_the_sampled_states() -> None:
     # With a sample in each period the states themselves tell how long each robot was in A and in P.
     model = played(Game(swarms=TRIO, duration=40.0, sample_period=0.1), "conflicts,trajectory")
     tables = model.tables()
@@ -69,7 +69,7 @@ def test_utilities_are_those_of_the_states_that_were_sampled() -> None:
 
 
 @pytest.mark.parametrize("swarms", [TRIO[:2], TRIO], ids=["two swarms", "three swarms"])
-def test_what_swarms_have_from_each_other_cancels(swarms: tuple[Swarm, ...]) -> None:
+def test_the_utilities_of_two_swarms_from_each_other_cancel(swarms: tuple[Swarm, ...]) -> None:
     conflicts = pd.DataFrame(played(Game(swarms=swarms, duration=60.0)).tables()["conflicts"])
     robots = robot_utilities(conflicts, ALPHA, BETA)
     u = robots[[f"u_{k + 1}" for k in range(len(swarms))]].to_numpy()
@@ -87,7 +87,7 @@ def test_what_swarms_have_from_each_other_cancels(swarms: tuple[Swarm, ...]) -> 
     assert is_zero_sum_difference([totals]) == (len(swarms) == 2)
 
 
-def test_the_measured_game_alone_is_measured_after_learning() -> None:
+def test_the_learning_phase_is_measured_separately() -> None:
     game = Game(
         swarms=(Swarm(policy="avoid", size=6), Swarm(policy="learner", size=6)), learning=40.0, duration=60.0
     )
@@ -99,7 +99,7 @@ def test_the_measured_game_alone_is_measured_after_learning() -> None:
     assert measured["conflicts"].sum() + learned["conflicts"].sum() == len(conflicts)
 
 
-def test_a_file_of_conflicts_gives_what_the_games_themselves_give(tmp_path: Path) -> None:
+def test_a_file_of_conflicts_gives_the_utilities_of_the_games(tmp_path: Path) -> None:
     swarms = tuple(SwarmRule(policy=policy) for policy in ("avoid", "attack"))
     crowd = Scenario(
         id="crowd", title="A crowd", densities=(10, 16), seeds=1,

@@ -1,4 +1,4 @@
-"""Findings as data: what a TOML file may say, what it may not, and those of the thesis."""
+"""Findings as data: valid and invalid TOML files, and the findings of the thesis."""
 
 from pathlib import Path
 from typing import Any
@@ -44,7 +44,7 @@ def write(tmp_path: Path) -> Any:
     return write
 
 
-def test_a_finding_of_a_users_own(write: Any) -> None:
+def test_a_user_defined_finding_is_loaded(write: Any) -> None:
     (finding,) = read_findings(write(HEAD + COMPARE + "margin = 2\n"))
     assert (finding.id, finding.source, finding.confidence) == ("mine", "", 0.95)
     assert finding.scenarios == ("a", "b")
@@ -116,19 +116,19 @@ def test_a_finding_can_be_changed() -> None:
         ),
     ],
 )
-def test_what_is_no_finding(write: Any, text: str, complaint: str) -> None:
+def test_invalid_findings_are_refused(write: Any, text: str, complaint: str) -> None:
     with pytest.raises(InputError, match=complaint):
         read_findings(write(text))
 
 
-def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
+def test_an_unreadable_file_is_refused(tmp_path: Path) -> None:
     (tmp_path / "latin.toml").write_bytes(b'id = "\xe9"')
     for name in ("absent.toml", "latin.toml", "."):
         with pytest.raises(InputError, match="must be a readable TOML file"):
             read_findings(tmp_path / name)
 
 
-def test_the_thesiss_findings_are_about_what_the_catalogue_has() -> None:
+def test_the_findings_of_the_thesis_refer_to_the_catalogue() -> None:
     assert len({finding.id for finding in FINDINGS}) == len(FINDINGS) > 15
     for finding in FINDINGS:
         for quantity in finding.claim.quantities:
@@ -142,7 +142,7 @@ def test_the_thesiss_findings_are_about_what_the_catalogue_has() -> None:
             assert set(finding.claim.densities) <= set(scenario.densities)
 
 
-def test_each_measure_can_be_looked_up() -> None:
+def test_each_measure_is_read_from_the_results() -> None:
     row = {"scenario": "a", "condition": "", "n": 6, "seed": 0, "swarm": 1, "size": 3, "pucks": 7, "sud": -2}
     row |= {"t_a_intra": 30.0, "t_a_inter": 60.0, "t_p": 210.0, "conflicts_intra": 4, "conflicts_inter": 9}
     row |= {"duration": 100.0}
@@ -177,13 +177,13 @@ def test_each_measure_can_be_looked_up() -> None:
     )
 
 
-def test_without_policies_nothing_was_learned() -> None:
+def test_a_learned_measure_without_policies_has_no_samples() -> None:
     row = {"scenario": "a", "condition": "", "n": 6, "seed": 0, "swarm": 1}
     quantity = Quantity(measure="learned_attack", scenario="a", swarm=1)
     assert sample(Results(pd.DataFrame([row])), quantity).empty
 
 
-def test_a_finding_holds_where_it_was_stated(write: Any) -> None:
+def test_a_finding_from_a_file_is_judged(write: Any) -> None:
     """The round of a user: a file, results, a verdict."""
     rows = [
         {"scenario": scenario, "condition": "", "n": 20, "seed": seed, "swarm": 1, "pucks": pucks + seed % 3}

@@ -1,4 +1,4 @@
-"""What a verdict says besides its word: numbers, unit and seeds, and what would decide what is in doubt."""
+"""Numbers, units, seeds and notes of verdicts."""
 
 import pytest
 
@@ -11,7 +11,7 @@ from tests.helpers.made_up_results import BEHIND, FAR, S1, S2, TIE, duel, more, 
 BOTH = Quantity(scenario="duel")
 
 
-def test_a_verdict_at_every_density_shows_the_one_that_decides() -> None:
+def test_a_verdict_at_every_density_shows_the_deciding_one() -> None:
     verdict = verdict_on(more(), duel([5, 3, 5, 5, 5]))
     assert verdict.effect == pytest.approx(3)
     assert verdict.low is not None
@@ -23,7 +23,7 @@ def test_a_verdict_at_every_density_shows_the_one_that_decides() -> None:
     assert failed.note.endswith("false at N = 16, 40")
 
 
-def test_a_verdict_in_a_line() -> None:
+def test_a_verdict_is_one_line_of_text() -> None:
     verdict = Verdict("it", "It is so.", HOLDS, 1.25, 0.5, 2.0, "pucks", 8, "N = 6")
     assert str(verdict) == "it holds: 1.25 pucks (0.5 … 2); 8 seeds; N = 6"
     open_ended = Verdict("it", "It is so.", UNDECIDED, 36.125, 30.0, None, "robots", 8, "N = 6, 50")
@@ -40,7 +40,7 @@ def test_an_undecided_verdict_says_how_many_seeds_would_decide() -> None:
     assert "no number of seeds decides" in verdict_on(more(over="mean over N"), duel(TIE)).note
 
 
-def test_a_density_that_is_missing_is_named() -> None:
+def test_a_missing_density_is_named() -> None:
     verdict = verdict_on(more(densities=(6, 26, 30)), duel(FAR))
     assert (verdict.verdict, verdict.note.split("; ")[1]) == (HOLDS, "without N = 26")
 
@@ -62,19 +62,19 @@ def test_too_few_seeds_decide_nothing(claim: Claim) -> None:
     assert verdict.note.endswith("seeds")
 
 
-def test_to_fail_at_one_of_many_densities_takes_more_seeds_than_at_one() -> None:
+def test_failing_at_one_of_many_densities_needs_more_seeds() -> None:
     # Six seeds suffice for 95 %, but five densities take 99 %: eight.
     assert verdict_on(more(), duel(BEHIND, seeds=7)).verdict == UNDECIDED
     assert verdict_on(more(), duel(BEHIND, seeds=8)).verdict == FAILS
     assert verdict_on(more(densities=(6,)), duel(BEHIND, seeds=6)).verdict == FAILS
 
 
-def test_a_single_seed_gives_its_number_alone() -> None:
+def test_a_single_seed_has_an_effect_without_interval() -> None:
     verdict = verdict_on(more(over="mean over N"), duel(FAR, seeds=1))
     assert (verdict.verdict, verdict.effect, verdict.low) == (UNDECIDED, 5.0, None)
 
 
-def test_a_lead_in_doubt_at_either_end_is_told() -> None:
+def test_an_uncertain_lead_at_either_end_is_noted() -> None:
     verdict = verdict_on(Overtake(ahead=S2, behind=S1, between=(16, 30)), duel([1, 1, 1, 1, 0.5]))
     assert (verdict.verdict, verdict.low, verdict.high) == (UNDECIDED, None, None)
     assert "possibly ahead from N = 6 on" in verdict.note
@@ -85,7 +85,7 @@ def test_a_lead_in_doubt_at_either_end_is_told() -> None:
     )
 
 
-def test_only_seeds_that_both_sides_have_are_compared() -> None:
+def test_only_common_seeds_are_compared() -> None:
     results = duel(FAR)
     kept = (results.runs["swarm"] == 1) | (results.runs["seed"] >= 2) | (results.runs["n"] != 16)
     verdict = verdict_on(more(), Results(results.runs[kept]))
@@ -103,13 +103,13 @@ def test_only_seeds_that_both_sides_have_are_compared() -> None:
         ("pucks", 20.0, "pucks"),
     ],
 )
-def test_what_all_swarms_together_measure(measure: str, expected: float, unit: str) -> None:
+def test_measures_of_all_swarms_are_sums(measure: str, expected: float, unit: str) -> None:
     claim = Compare(left=BOTH.replace(measure=measure), relation=">", right=0.0, over="mean over N")
     verdict = verdict_on(claim, duel(TIE))
     assert (verdict.effect, verdict.unit) == (pytest.approx(expected), unit)
 
 
-def test_the_difference_of_percentages_is_in_points() -> None:
+def test_a_difference_of_percentages_is_in_percentage_points() -> None:
     claim = more(left=S2.replace(measure="time_inter"), right=S2.replace(measure="time_intra"))
     verdict = verdict_on(claim, duel(TIE))
     assert (verdict.effect, verdict.unit, verdict.verdict) == (pytest.approx(20), "percentage points", HOLDS)

@@ -1,6 +1,5 @@
-"""Statistics of contributions, on data whose answer is known, and how they are shown."""
+"""Statistics of contributions with known answers."""
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.figures.contribution import contribution_figure, write_contribution_figure
+from kswarms.analysis.figures.contribution import contribution_figure
 from kswarms.analysis.measures.contribution import (
     assumption,
     mean_contributions,
@@ -21,51 +20,23 @@ from kswarms.analysis.measures.contribution import (
     time_sud,
 )
 from kswarms.analysis.measures.utilities import robot_utilities, utilities_by_swarm
-from kswarms.analysis.results.records import read_contributions
 from kswarms.analysis.statistics.curves import spearman
 from kswarms.analysis.statistics.intervals import bootstrap_interval
-from kswarms.analysis.tables.contribution import contribution_tables
-
-SEEDS, ROBOTS = 12, 8
-
-
-def table(seeds: int = SEEDS, robots: int = ROBOTS, swarm: int = 2, **columns: Any) -> pd.DataFrame:
-    """Return rows of contributions; columns are arrays of shape (seeds, robots), or the same for all."""
-    shape = (seeds, robots)
-    seed, robot = (index.ravel() for index in np.indices(shape))
-    times = {
-        f"{others}_{what}": 100.0
-        for others in ("mates", "opponents")
-        for what in ("t_a", "t_a_without", "t_p", "t_p_without", "t_a_met")
-    }
-    question = {"scenario": "fig-6.4b", "condition": "", "n": 16, "absent_from": "game"}
-    question |= {"run": "with", "run_without": "without"}
-    policy = "inter-learner(rule='greedy')"
-    robots_own = {"swarm": swarm, "policy": policy, "reward": 1.0, "reward_time": 10.0}
-    suds = {"sud": 0, "sud_without": 0, "time_sud": 0.0, "time_sud_without": 0.0}
-    durations = {"duration": 600.0, "duration_without": 600.0}
-    plain: dict[str, Any] = {**question, **robots_own, **suds, **durations, **times, **columns}
-    filled = {name: np.broadcast_to(values, shape).ravel() for name, values in plain.items()}
-    return pd.DataFrame({"seed": seed, "robot": robot + 10 * swarm, **filled})
-
-
-def noise(size: float = 1.0, seed: int = 0, shape: tuple[int, int] = (SEEDS, ROBOTS)) -> Any:
-    return np.random.default_rng(seed).normal(0.0, size, shape)
-
-
-# One question.
+from tests.helpers.contribution_rows import ROBOTS, SEEDS, contribution_rows, noise
 
 
 def test_a_contribution_is_sud_less_sud_without() -> None:
-    rows = of_question(table(sud=7, sud_without=[[3] * 4 + [9] * 4], time_sud=1.5, time_sud_without=2.0))
+    rows = of_question(
+        contribution_rows(sud=7, sud_without=[[3] * 4 + [9] * 4], time_sud=1.5, time_sud_without=2.0)
+    )
     assert set(rows["pucks"]) == {4.0, -2.0}
     assert set(rows["time"]) == {-0.5}
     assert set(rows["reward_rate"]) == {0.1}
-    assert of_question(table(reward_time=0.0))["reward_rate"].isna().all()
+    assert of_question(contribution_rows(reward_time=0.0))["reward_rate"].isna().all()
 
 
-def test_questions_are_told_apart() -> None:
-    several = pd.concat([table(), table(n=26, sud=5)])
+def test_several_questions_must_be_told_apart() -> None:
+    several = pd.concat([contribution_rows(), contribution_rows(n=26, sud=5)])
     assert set(of_question(several, n=26)["pucks"]) == {5.0}
     with pytest.raises(InputError, match=r"n=None: must be one of 16, 26"):
         of_question(several)
@@ -73,12 +44,9 @@ def test_questions_are_told_apart() -> None:
         of_question(several, n=26, scenario="fig-6.1")
 
 
-# Means.
-
-
 def test_means_have_bootstrap_intervals_over_the_seeds() -> None:
     contribution = noise(5.0) + np.arange(ROBOTS)
-    found = mean_contributions(of_question(table(time_sud=contribution)))
+    found = mean_contributions(of_question(contribution_rows(time_sud=contribution)))
     assert found["robot"].tolist() == [*range(20, 28), -1]
     for k, row in enumerate(found.to_dict("records")):
         sample = contribution[:, k] if k < ROBOTS else contribution.mean(axis=1)
@@ -88,14 +56,18 @@ def test_means_have_bootstrap_intervals_over_the_seeds() -> None:
         assert row["seeds"] == SEEDS
 
 
-def test_swarms_have_means_of_their_own() -> None:
-    found = mean_contributions(of_question(pd.concat([table(swarm=1, sud=3), table(swarm=2, sud=-1)])))
+def test_each_swarm_has_its_own_mean_robot() -> None:
+    found = mean_contributions(
+        of_question(pd.concat([contribution_rows(swarm=1, sud=3), contribution_rows(swarm=2, sud=-1)]))
+    )
     assert found[found["robot"] < 0][["swarm", "pucks"]].to_numpy().tolist() == [[1, 3.0], [2, -1.0]]
 
 
 @pytest.mark.parametrize("seeds", [1, 5])
 def test_fewer_than_six_seeds_have_no_interval(seeds: int) -> None:
-    rows = of_question(table(seeds=seeds, time_sud=noise(shape=(seeds, ROBOTS)), reward=np.arange(8.0)))
+    rows = of_question(
+        contribution_rows(seeds=seeds, time_sud=noise(shape=(seeds, ROBOTS)), reward=np.arange(8.0))
+    )
     assert mean_contributions(rows)[["time_low", "time_high", "reward_low"]].isna().all(axis=None)
     found = rank_correlations(rows).set_index("measure").loc["time"]
     assert not np.isnan(found["robots"])
@@ -103,12 +75,9 @@ def test_fewer_than_six_seeds_have_no_interval(seeds: int) -> None:
     assert assumption(rows)["share_low"].isna().all()
 
 
-# Rank correlations.
-
-
 @settings(max_examples=30)
 @given(seed=st.integers(0, 10**6), values=st.integers(2, 20), robots=st.integers(3, 12))
-def test_the_rank_correlation_is_scipys(seed: int, values: int, robots: int) -> None:
+def test_spearman_agrees_with_scipy(seed: int, values: int, robots: int) -> None:
     draws = np.random.default_rng(seed)
     both = draws.integers(0, values, size=(2, 4, robots)).astype(float)
     found = spearman(*both)
@@ -120,31 +89,35 @@ def test_the_rank_correlation_is_scipys(seed: int, values: int, robots: int) -> 
 
 
 @pytest.mark.parametrize("sign", [1, -1])
-def test_rewards_that_order_robots_as_their_contributions_do_are_found(sign: int) -> None:
+def test_rewards_in_the_order_of_contributions_have_rank_correlation_1(sign: int) -> None:
     true = np.exp(np.arange(ROBOTS) / 2)
-    rows = of_question(table(time_sud=true + noise(0.1), reward=sign * true**3 + noise(0.1, seed=1)))
+    rows = of_question(
+        contribution_rows(time_sud=true + noise(0.1), reward=sign * true**3 + noise(0.1, seed=1))
+    )
     found = rank_correlations(rows).set_index("measure").loc["time"]
     assert found["robots"] == found["robots_low"] == found["robots_high"] == pytest.approx(sign)
     assert sign * found["games"] > 0.9
     assert -1.0 <= found["games_low"] <= found["games_high"] <= 1.0
 
 
-def test_a_correlation_within_games_is_none_of_the_means() -> None:
+def test_a_correlation_within_games_is_not_one_of_the_means() -> None:
     """A robot that happened to do well in a game was rewarded in it, but none is better than another."""
     luck = noise(1.0)
     luck -= luck.mean(axis=0)  # over the seeds, all are alike …
-    rows = of_question(table(time_sud=luck + noise(0.01, seed=3), reward=luck + noise(0.01, seed=2)))
+    rows = of_question(
+        contribution_rows(time_sud=luck + noise(0.01, seed=3), reward=luck + noise(0.01, seed=2))
+    )
     found = rank_correlations(rows).set_index("measure").loc["time"]
     assert found["games"] > 0.95
     assert abs(found["robots"]) < 0.9  # … so their means are only noise
 
 
-def test_where_nothing_is_to_be_found_intervals_hold_zero() -> None:
+def test_intervals_of_independent_quantities_contain_0() -> None:
     """Rewards independent of contributions, 80 times: some 5 % of 95 % intervals may miss 0."""
     missed = {"robots": 0, "games": 0}
     for repetition in range(80):
         draws = {"time_sud": noise(3.0, 2 * repetition), "reward": noise(2.0, 2 * repetition + 1)}
-        found = rank_correlations(of_question(table(**draws))).set_index("measure").loc["time"]
+        found = rank_correlations(of_question(contribution_rows(**draws))).set_index("measure").loc["time"]
         for name in missed:
             missed[name] += not found[f"{name}_low"] <= 0 <= found[f"{name}_high"]
     # More than 11 of 80 happen once in a thousand times; with none at all the intervals would be too wide.
@@ -152,28 +125,25 @@ def test_where_nothing_is_to_be_found_intervals_hold_zero() -> None:
     assert missed["robots"] <= 11  # a bootstrap of given robots is cautious here
 
 
-def test_ranks_take_three_robots_and_differences() -> None:
-    assert rank_correlations(of_question(table(robots=2))).empty
-    found = rank_correlations(of_question(table()))
+def test_rank_correlations_need_three_different_robots() -> None:
+    assert rank_correlations(of_question(contribution_rows(robots=2))).empty
+    found = rank_correlations(of_question(contribution_rows()))
     assert found["measure"].tolist() == ["pucks", "time"]
     assert found[["robots", "games", "games_low"]].isna().all(axis=None)
 
 
-def test_what_was_not_measured_is_left_out() -> None:
-    rows = of_question(table(time_sud=np.nan, sud=noise(9.0).round().astype(int)))
+def test_missing_measures_are_left_out() -> None:
+    rows = of_question(contribution_rows(time_sud=np.nan, sud=noise(9.0).round().astype(int)))
     assert measures_of(rows) == ["pucks"]
     assert rank_correlations(rows)["measure"].tolist() == ["pucks"]
     assert len(contribution_figure(rows).axes) == 1
-
-
-# The assumption.
 
 
 @pytest.mark.parametrize("share", [1.0, 0.0, 0.4, -0.3])
 def test_the_share_of_conflict_time_that_becomes_program_time(share: float) -> None:
     met = 50.0 + noise(5.0)
     rows = of_question(
-        table(
+        contribution_rows(
             mates_t_a=300.0,
             mates_t_a_without=300.0 - share * met,
             mates_t_p=900.0,
@@ -190,27 +160,24 @@ def test_the_share_of_conflict_time_that_becomes_program_time(share: float) -> N
 def test_the_interval_of_the_share_widens_with_the_noise() -> None:
     widths = []
     for size in (1.0, 20.0):
-        rows = of_question(table(opponents_t_a=200.0 + noise(size), opponents_t_a_without=150.0))
+        rows = of_question(contribution_rows(opponents_t_a=200.0 + noise(size), opponents_t_a_without=150.0))
         found = assumption(rows).set_index("others").loc["opponents"]
         assert found["share_low"] < found["share"] < found["share_high"]
         widths.append(found["share_high"] - found["share_low"])
     assert widths[0] < widths[1] / 10
 
 
-def test_times_of_games_of_different_length_are_made_comparable() -> None:
-    rows = of_question(table(mates_t_a=200.0, mates_t_a_without=300.0, duration_without=1200.0))
+def test_times_are_scaled_to_the_duration_with_the_robot() -> None:
+    rows = of_question(contribution_rows(mates_t_a=200.0, mates_t_a_without=300.0, duration_without=1200.0))
     found = assumption(rows).set_index("others").loc["mates"]
     assert (found["t_a_without"], found["t_p_without"], found["share"]) == (150.0, 50.0, 0.5)
 
 
 def test_without_others_or_meetings_there_is_no_share() -> None:
     nobody = {f"mates_{what}": 0.0 for what in ("t_a", "t_a_without", "t_p", "t_p_without", "t_a_met")}
-    found = assumption(of_question(table(**nobody, opponents_t_a_met=0.0)))
+    found = assumption(of_question(contribution_rows(**nobody, opponents_t_a_met=0.0)))
     assert found["others"].tolist() == ["opponents"]
     assert found[["share", "share_low", "share_high"]].isna().all(axis=None)
-
-
-# SUD in time-utility.
 
 
 def test_sud_in_time_utility_is_that_of_the_measured_game() -> None:
@@ -230,64 +197,3 @@ def test_sud_in_time_utility_is_that_of_the_measured_game() -> None:
     assert found == pytest.approx(expected["sud"].tolist())
     assert found[0] == -found[1] != 0
     assert time_sud({name: values[:1] for name, values in conflicts.items()}, 2) == [0.0, 0.0]
-
-
-# For people.
-
-
-def rows_of_two_swarms() -> pd.DataFrame:
-    better = np.arange(ROBOTS)
-    first = table(swarm=1, policy="attack", time_sud=noise(), reward=3 + noise(0.1, 1), sud=2)
-    second = table(swarm=2, time_sud=better + noise(seed=2), reward=better + noise(0.1, 3))
-    return of_question(pd.concat([first, second]))
-
-
-def test_the_scatter_shows_each_robot_where_its_means_are() -> None:
-    rows = rows_of_two_swarms()
-    figure = contribution_figure(rows, "who meets whom")
-    pucks, time = figure.axes
-    assert (pucks.get_ylabel()[-7:], time.get_ylabel()[-3:]) == ("(pucks)", "(s)")
-    assert "fig-6.4b: who meets whom, N = 16" in figure.get_suptitle()
-    labels = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels == ["S1: attack", "S2: inter-learner"]
-    found = mean_contributions(rows)
-    for swarm, bars in zip((1, 2), time.containers, strict=True):
-        robots = found[(found["swarm"] == swarm) & (found["robot"] >= 0)]
-        assert bars.lines[0].get_xydata().tolist() == robots[["reward", "time"]].to_numpy().tolist()
-    assert time.get_title().count("rank correlation of robots") == 2
-
-
-def test_what_is_printed_names_robots_swarms_and_intervals() -> None:
-    (_, robots), (_, ranks), (_, became) = contribution_tables(rows_of_two_swarms())
-    assert [line[0] for line in robots[1:]] == [
-        *map(str, range(10, 18)),
-        "mean of S1",
-        *map(str, range(20, 28)),
-        "mean of S2",
-    ]
-    assert robots[1][2] == "2.00 (2.00 … 2.00)"
-    assert [line[:2] for line in ranks[1:]] == [["S1", "pucks"], ["S1", "s"], ["S2", "pucks"], ["S2", "s"]]
-    assert ranks[1][2:] == ["–", "–"]
-    assert became[1] == ["S1", "mates", "100.0", "100.0", "100.0", "100.0", "100.0", "0.00 (0.00 … 0.00)"]
-    assert contribution_tables(of_question(table(seeds=1)))[0][1][1][2] == "0.00"
-
-
-def test_a_figure_is_written_from_the_table(tmp_path: Path) -> None:
-    pd.concat([table(reward=noise()), table(n=26)]).to_parquet(tmp_path / "contribution.parquet")
-    assert len(read_contributions(tmp_path)) == 2 * SEEDS * ROBOTS
-    path = write_contribution_figure(tmp_path, n=16)
-    assert path == tmp_path / "figures" / "contribution-fig-6.4b.png"
-    assert path.read_bytes().startswith(b"\x89PNG")
-    assert list(path.parent.iterdir()) == [path]
-
-
-def test_bad_input_is_told(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"must be a directory that holds contribution\.parquet"):
-        read_contributions(tmp_path)
-    (tmp_path / "contribution.parquet").write_bytes(b"no table")
-    with pytest.raises(InputError, match="must be a readable Parquet file"):
-        read_contributions(tmp_path)
-    table().to_parquet(tmp_path / "contribution.parquet")
-    (tmp_path / "figures").write_text("in the way")
-    with pytest.raises(InputError, match="must be a writable file"):
-        write_contribution_figure(tmp_path)

@@ -87,7 +87,7 @@ def test_jams_are_robots_linked_at_the_same_moment() -> None:
     assert over_time["jammed"].tolist() == [0, 0, 0, 3, 0, 0, 0, 0, 0, 0]
 
 
-def test_jams_at_finer_moments_of_a_later_phase() -> None:
+def test_jams_can_be_sampled_more_finely_and_later() -> None:
     late = MET.assign(start=MET["start"] + 3000.1)
     over_time = jams(late, every=0.1)
     jammed = over_time[over_time["jammed"] == 3]["time"]

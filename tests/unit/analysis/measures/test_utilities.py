@@ -1,4 +1,4 @@
-"""Utilities measured on a table of conflicts that was worked out by hand (section 1.3)."""
+"""Utilities of a table of conflicts, computed by hand (section 1.3)."""
 
 from typing import Any
 
@@ -57,7 +57,7 @@ def test_weights_by_swarm_and_opponent() -> None:
     assert measured(alpha, beta) == [(20, 35, 55, 53), (-5, 0, -5, -5), (-35, 0, -35, -11)]
 
 
-def test_a_robot_that_was_only_seen_has_what_its_opponents_lost() -> None:
+def test_a_robot_that_was_only_seen_has_utilities() -> None:
     robots = robot_utilities(table().iloc[:1])
     # Robot 2 was in P for all ten seconds: u_0^2 = 6 − 10.
     assert robots[["robot", "conflicts", "u_1", "u_2", "wlu"]].to_numpy().tolist() == [
@@ -67,7 +67,7 @@ def test_a_robot_that_was_only_seen_has_what_its_opponents_lost() -> None:
     ]
 
 
-def test_games_are_told_apart_by_their_run_and_measured_one_by_one() -> None:
+def test_games_are_measured_separately_by_run() -> None:
     # In the second, of three swarms, robot 1 is of S3, and does not notice.
     seen = [[[], [2], [1]], [[0], [], []]]
     second = pd.DataFrame(ROWS[:2]).assign(phase="game", seen=seen, run="b")
@@ -89,7 +89,7 @@ def test_games_are_told_apart_by_their_run_and_measured_one_by_one() -> None:
     assert swarms["sud"].tolist() == [2 + 6 - 4, -6 - 2 - 4, 4 - 2 + 6, 16, -16]
 
 
-def test_the_phase_that_is_asked_for_is_measured() -> None:
+def test_the_given_phase_is_measured() -> None:
     learning = table(phase="learning").assign(t_p=[3.0, 3.0, 3.0])
     both = pd.concat([learning, table()], ignore_index=True)
     assert robot_utilities(both).equals(robot_utilities(table()))
@@ -111,6 +111,8 @@ def test_the_phase_that_is_asked_for_is_measured() -> None:
         (table(opponent_swarm=[2, 1, 3]), {}, "must have a list for each swarm"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_measured_is_refused(conflicts: pd.DataFrame, weights: Any, message: str) -> None:
+def test_invalid_conflicts_and_weights_are_refused(
+    conflicts: pd.DataFrame, weights: Any, message: str
+) -> None:
     with pytest.raises(InputError, match=message):
         robot_utilities(conflicts, **weights)

@@ -1,4 +1,4 @@
-"""The published numbers arrive whole, and agree with what their sources say about them."""
+"""Published numbers are complete and agree with their sources."""
 
 import pytest
 
@@ -23,7 +23,7 @@ def test_table_6_2() -> None:
     assert table["intra_avoid_pct"].min() == 99.4
 
 
-def test_both_tables_in_one_form() -> None:
+def test_the_learned_percentages_combine_both_tables() -> None:
     both = learned_percentages()
     columns = both.set_index(["scenario", "learned", "n"])["published"]
     assert len(columns) == 40
@@ -33,7 +33,7 @@ def test_both_tables_in_one_form() -> None:
     assert columns["fig-6.8", "flight within", 50] == 99.4
 
 
-def test_argos_games_are_ten_of_each_kind_and_last_600_s_for_every_robot() -> None:
+def test_there_are_ten_argos_games_of_each_kind_with_600_s_for_each_robot() -> None:
     games = argos_fixed_policies()
     sizes = games.groupby(["s1_policy", "s2_policy", "n"])["seed"].nunique()
     assert len(sizes) == 15
@@ -43,7 +43,7 @@ def test_argos_games_are_ten_of_each_kind_and_last_600_s_for_every_robot() -> No
         assert lived.to_numpy() == pytest.approx(600 * games["n"].to_numpy() / 2, abs=0.2)
 
 
-def test_argos_mean_scores_are_those_its_description_gives() -> None:
+def test_the_mean_scores_of_argos_match_its_description() -> None:
     games = argos_fixed_policies()
     avoid = games[(games["s1_policy"] == "avoid") & (games["s2_policy"] == "avoid")].groupby("n")["score1"]
     assert avoid.mean().tolist() == pytest.approx([17.5, 26.0, 19.1, 12.5, 8.9])

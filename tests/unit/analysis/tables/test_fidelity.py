@@ -1,4 +1,4 @@
-"""The comparison with ARGoS on synthetic runs whose verdicts are known."""
+"""Comparison of synthetic runs with ARGoS, with known answers."""
 
 from collections.abc import Sequence
 
@@ -69,7 +69,7 @@ def test_argos_agrees_with_itself_in_every_row() -> None:
     assert frame["share_fits"].all()
 
 
-def test_s1_avoids_and_s2_attacks_in_avoid_against_attack() -> None:
+def test_the_first_policy_is_that_of_s1() -> None:
     games = argos("avoid", "attack", 36)
     frame = against_argos(own_form(games)).set_index("swarm")
     assert frame["score_theirs"].to_dict() == pytest.approx({1: 34.3, 2: 28.9})
@@ -78,7 +78,7 @@ def test_s1_avoids_and_s2_attacks_in_avoid_against_attack() -> None:
     assert frame.loc[2, "share_theirs"] == pytest.approx(expected, abs=1e-4)
 
 
-def test_interval_is_the_one_of_welch() -> None:
+def test_the_interval_is_that_of_welch() -> None:
     pucks = [20, 31, 25, 28, 27, 24]
     row = only_row(runs_of(pucks))
     theirs = argos("avoid", "avoid", 16)["score1"]
@@ -100,13 +100,13 @@ def test_interval_is_the_one_of_welch() -> None:
         ([10, 60, 35, 20, 55], True),  # +38 %, 10 pucks, but the interval holds 0
     ],
 )
-def test_score_verdict_by_share_and_by_interval(pucks: list[int], fits: bool) -> None:
+def test_a_score_agrees_by_relative_difference_or_interval(pucks: list[int], fits: bool) -> None:
     row = only_row(runs_of(pucks))
     assert bool(row["score_fits"]) is fits
 
 
 @pytest.mark.parametrize(("more", "fits"), [(1.5, True), (1.6, False)])
-def test_score_verdict_by_pucks_where_few_are_scored(more: float, fits: bool) -> None:
+def test_a_low_score_agrees_by_difference_in_pucks(more: float, fits: bool) -> None:
     # Here 2.2 - 0.7 is more than 1.5 in floating point.
     theirs = argos("attack", "attack", 26)["score1"].mean()
     assert theirs == pytest.approx(0.7)
@@ -120,7 +120,7 @@ def test_score_verdict_by_pucks_where_few_are_scored(more: float, fits: bool) ->
 
 
 @pytest.mark.parametrize(("off", "fits"), [(0.06, True), (-0.06, True), (0.061, False), (-0.061, False)])
-def test_share_verdict(off: float, fits: bool) -> None:
+def test_a_share_of_time_agrees_within_its_tolerance(off: float, fits: bool) -> None:
     games = argos("avoid", "avoid", 16)
     in_conflict = games["ta_intra1"] + games["ta_inter1"]
     share = (in_conflict / (in_conflict + games["tp1"])).mean()
@@ -129,13 +129,13 @@ def test_share_verdict(off: float, fits: bool) -> None:
     assert bool(row["share_fits"]) is fits
 
 
-def test_one_game_has_no_interval_to_be_saved_by() -> None:
+def test_a_single_game_has_no_interval() -> None:
     row = only_row(runs_of([60]))
     assert pd.isna(row["score_low"])
     assert not row["score_fits"]
 
 
-def test_scores_that_never_vary_have_their_difference_as_interval(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_constant_scores_have_an_interval_of_width_0(monkeypatch: pytest.MonkeyPatch) -> None:
     constant = argos("avoid", "avoid", 16).assign(score1=0)
     monkeypatch.setattr("kswarms.analysis.tables.fidelity.argos_fixed_policies", lambda: constant)
     row = only_row(runs_of([3, 3, 3]))
@@ -151,14 +151,14 @@ def test_other_scenarios_and_densities_are_left_out() -> None:
     assert (row["scenario"], row["n"], row["swarm"]) == ("argos-avoid-avoid", 16, 1)
 
 
-def test_nothing_to_compare() -> None:
+def test_runs_without_argos_games_are_refused() -> None:
     with pytest.raises(
         InputError, match=r"fig-6\.1a.*must include argos-attack-attack, .* N = 6, 16, 26, 36, 46"
     ):
         against_argos(runs_of([26, 27], scenario="fig-6.1a"))
 
 
-def test_markdown_says_what_the_frame_says() -> None:
+def test_markdown_has_the_numbers_of_the_frame() -> None:
     frame = against_argos(pd.concat([runs_of([26] * 3), runs_of([60], share=0.9, swarm=2)]))
     head, rule, first, second = markdown_table(frame).splitlines()
     assert head.count("|") == rule.count("|") == first.count("|") == second.count("|")
@@ -171,7 +171,7 @@ def test_markdown_says_what_the_frame_says() -> None:
     assert cells[7] == cells[11] == "**no**"
 
 
-def test_markdown_has_no_relative_difference_from_zero(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_markdown_has_a_dash_for_a_relative_difference_from_0(monkeypatch: pytest.MonkeyPatch) -> None:
     games = argos("avoid", "avoid", 16).assign(score1=0)
     monkeypatch.setattr("kswarms.analysis.tables.fidelity.argos_fixed_policies", lambda: games)
     assert "| – |" in markdown_table(against_argos(runs_of([3, 4])))

@@ -1,4 +1,4 @@
-"""Verdicts: for every kind of claim there are results for which it holds, fails, is undecided, is unknown."""
+"""Judging: each kind of claim has results for each verdict."""
 
 import math
 from collections.abc import Sequence
@@ -92,7 +92,9 @@ WITHIN = Quantity(measure="learned_flight_within", scenario="fig-6.8", swarm=2)
     ],
     ids=str,
 )
-def test_what_runs_decide(claim: Claim, lead: Sequence[float], expected: str) -> None:
+def test_each_kind_of_claim_about_runs_has_each_verdict(
+    claim: Claim, lead: Sequence[float], expected: str
+) -> None:
     verdict = verdict_on(claim, duel(lead))
     assert verdict.verdict == expected, str(verdict)
     assert verdict.seeds == 10
@@ -102,14 +104,14 @@ def test_what_runs_decide(claim: Claim, lead: Sequence[float], expected: str) ->
     ("shares", "scale", "expected"),
     [([0.0] * 5, 0.0, HOLDS), ([0.05] * 5, 0.01, FAILS), ([0.01] * 5, 0.005, UNDECIDED)],
 )
-def test_the_share_of_robots(shares: Sequence[float], scale: float, expected: str) -> None:
+def test_a_share_of_robots_has_each_verdict(shares: Sequence[float], scale: float, expected: str) -> None:
     results = learners(shares, scenario="fig-6.8", opponent=2, scale=scale)
     verdict = verdict_on(Share(quantity=WITHIN, above=99), results)
     assert verdict.verdict == expected, str(verdict)
     assert verdict.unit == "% of robots"
 
 
-def test_few_robots_without_an_exception_do_not_prove_that_there_is_none() -> None:
+def test_few_robots_without_exception_prove_no_high_share() -> None:
     # 3 robots in each of 10 games: the exact binomial interval of 30 out of 30 begins at 88 %.
     results = learners([0.0], scenario="fig-6.8", opponent=2, densities=(6,))
     verdict = verdict_on(Share(quantity=WITHIN, above=99), results)
@@ -136,7 +138,7 @@ PUBLISHED = [TABLE[n] / 100 for n in DENSITIES]
 
 
 @pytest.mark.parametrize(("off", "expected"), [(0.0, HOLDS), (0.03, HOLDS), (0.05, UNDECIDED), (0.2, FAILS)])
-def test_agreement_with_the_published_table(off: float, expected: str) -> None:
+def test_agreement_with_the_published_table_has_each_verdict(off: float, expected: str) -> None:
     results = learners([share + off for share in PUBLISHED], scale=0.02)
     verdict = verdict_on(Agreement(cells=(LEARNED,), margin=5), results)
     assert verdict.verdict == expected, str(verdict)
@@ -158,11 +160,11 @@ def test_agreement_with_the_published_table(off: float, expected: str) -> None:
     ],
     ids=str,
 )
-def test_what_has_not_been_played(claim: Claim, note: str) -> None:
+def test_missing_games_are_noted(claim: Claim, note: str) -> None:
     assert verdict_on(claim, duel(FAR)) == Verdict("it", "It is so.", NO_DATA, note=note)
 
 
-def test_nothing_published_of_these_densities() -> None:
+def test_densities_without_published_numbers_are_noted() -> None:
     verdict = verdict_on(Agreement(cells=(LEARNED,), margin=5), learners([0.0], densities=(8,)))
     assert (verdict.verdict, verdict.note) == (NO_DATA, "nothing published at N = 8")
 
@@ -181,7 +183,7 @@ def test_scenarios_played_at_different_densities_cannot_be_compared() -> None:
         ("mean over N", "no seed at all of N = 6, 16, 30, 40, 50"),
     ],
 )
-def test_other_seeds_are_no_pairs(over: str, note: str) -> None:
+def test_different_seeds_are_not_paired(over: str, note: str) -> None:
     other = runs([LEVEL], scenario="other").assign(seed=lambda rows: rows["seed"] + 100)
     results = Results(pd.concat([duel(FAR).runs, other]))
     verdict = verdict_on(more(right=Quantity(scenario="other", swarm=1), over=over), results)
@@ -190,7 +192,9 @@ def test_other_seeds_are_no_pairs(over: str, note: str) -> None:
 
 @pytest.mark.parametrize("lead", [FAR, NEAR, TIE, BEHIND, MIXED], ids=str)
 @pytest.mark.parametrize(("relation", "reverse"), [(">", "<"), (">=", "<="), ("within", "within")])
-def test_sides_may_be_exchanged(lead: Sequence[float], relation: str, reverse: str) -> None:
+def test_exchanging_the_sides_changes_nothing_else(
+    lead: Sequence[float], relation: str, reverse: str
+) -> None:
     there = verdict_on(more(relation, margin=0.5), duel(lead))
     back = verdict_on(more(reverse, margin=0.5, left=S1, right=S2), duel(lead))
     assert there.verdict == back.verdict
@@ -208,7 +212,7 @@ def test_the_order_of_rows_does_not_matter() -> None:
 
 
 @pytest.mark.slow
-def test_a_tie_is_called_a_loss_in_at_most_5_of_100_cases() -> None:
+def test_a_tie_fails_in_at_most_5_percent_of_cases() -> None:
     """Four densities in truth level: "at least as much at every N" is true, and "more at every N" false."""
     at_least, clearly = [], []
     for seed in range(60):
@@ -225,13 +229,13 @@ def test_a_tie_is_called_a_loss_in_at_most_5_of_100_cases() -> None:
 # ------------------------------------------------------------------------------------------------ bad results
 
 
-def test_a_game_that_is_there_twice() -> None:
+def test_duplicate_games_are_refused() -> None:
     results = duel(FAR)
     with pytest.raises(InputError, match="runs='duel': must have one row for each"):
         verdict_on(more(), Results(pd.concat([results.runs, results.runs])))
 
 
-def test_policies_without_their_games() -> None:
+def test_policies_without_games_are_refused() -> None:
     results = Results(duel(FAR).runs, policies([0.0] * 5))
     with pytest.raises(InputError, match=r"runs='fig-6\.4a': must have the games"):
         verdict_on(Share(quantity=LEARNED, above=50), results)
@@ -251,13 +255,13 @@ def test_an_opponent_must_be_named_among_several() -> None:
 # ------------------------------------------------------------------------------------------- the thesis's own
 
 
-def test_without_runs_of_its_scenarios_no_finding_is_decided() -> None:
+def test_findings_without_runs_have_no_data() -> None:
     verdicts = judge_all(duel(FAR))
     assert [verdict.finding for verdict in verdicts] == [finding.id for finding in FINDINGS]
     assert {verdict.verdict for verdict in verdicts} == {NO_DATA}
 
 
-def test_a_region_says_where_an_interval_lies() -> None:
+def test_a_region_classifies_intervals() -> None:
     above, within = Region(0, math.inf, closed=False), Region(-1, 1)
     assert above.verdict(Interval(0.0, 0.0, 0.0)) == FAILS
     assert above.verdict(Interval(1.0, 0.0, 2.0)) == UNDECIDED
