@@ -1,1 +1,1 @@
-"""What is computed from results: utilities and contributions."""
+"""Measures of results: utilities, contributions, networks, emergence, density of conflicts."""

@@ -91,7 +91,7 @@ def read_runs(directory: Path) -> pd.DataFrame:
 def read_policies(directory: Path) -> pd.DataFrame:
     """Read `policies.parquet`: one row for each run, learning swarm, swarm learned about and action.
 
-    Parameters, returned value and errors are those of `read_runs`.
+    Parameters, returned value and errors as for `read_runs`.
     """
     return _read_outcomes(directory, "policies")
 

@@ -29,7 +29,7 @@ def read_table(
     table : str
         Name of the table: a key of `kswarms.agents.common.columns.TABLES`.
     columns : sequence of str, optional
-        Columns to read; by default all columns of the file, also those that the schema does not name.
+        Columns to read; by default all columns of the file, including columns beyond the schema.
     runs : collection of str, optional
         Runs to read; by default all.
 

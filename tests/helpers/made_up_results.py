@@ -30,7 +30,7 @@ def runs(
     condition: str = "",
     scale: float = 1.0,
 ) -> pd.DataFrame:
-    """Return runs in which swarm k scores, on the mean of the seeds, the k-th curve."""
+    """Return runs in which the mean score of swarm k is the k-th curve."""
     rows = []
     for swarm, curve in enumerate(curves, start=1):
         values = np.asarray(curve) + noise(seeds, len(densities), scale, seed=swarm)
@@ -53,7 +53,7 @@ def policies(
     opponent: int = 1,
     scale: float = 0.0,
 ) -> pd.DataFrame:
-    """Return policies of S2 in which these shares learned to attack a swarm."""
+    """Return policies of S2 in which these shares of robots learned to attack a swarm."""
     values = np.asarray(shares) + noise(seeds, len(densities), scale)
     rows = [
         {"scenario": scenario, "condition": "", "n": densities[column], "seed": seed, "swarm": 2}
@@ -65,7 +65,7 @@ def policies(
 
 
 def learners(shares: Sequence[float], **rest: Any) -> Results:
-    """Return results of learners, and the games they played."""
+    """Return results of learners: policies and runs."""
     scenario = rest.get("scenario", "fig-6.4a")
     seeds = rest.get("seeds", 10)
     densities = rest.get("densities", DENSITIES)
@@ -85,7 +85,7 @@ LEVEL = [10.0] * 5
 
 
 def duel(lead: Sequence[float], **rest: Any) -> Results:
-    """Return results in which S2 scores so much more than S1."""
+    """Return results in which the score of S2 exceeds that of S1 by `lead`."""
     return Results(runs([LEVEL, [10 + each for each in lead]], **rest))
 
 

@@ -16,7 +16,7 @@ def runs_of(
     densities: Iterable[int] = DENSITIES,
     seeds: int = 4,
 ) -> pd.DataFrame:
-    """Make runs whose swarm k deposits 10 k + n + 100 (index of the condition) pucks, ± 1 by the seed."""
+    """Return runs in which swarm k deposits 10 k + n + 100 (index of the condition) ± 1 pucks."""
     return pd.DataFrame(
         {
             "run": f"{condition}-{n}-{seed}",
@@ -85,7 +85,7 @@ def robots(runs: tuple[str, ...] = ("a",)) -> pd.DataFrame:
             {"opponent": 1, "action": "fight", "reward": 1.0, "time": 1.0, "count": 1.0, "q": fight},
         ]
 
-    told = [(0, 1, []), (2, 2, arms(0.2, 0.1)), (3, 2, arms(None, 0.3))]
+    of_robots = [(0, 1, []), (2, 2, arms(0.2, 0.1)), (3, 2, arms(None, 0.3))]
     return pd.DataFrame(
         {
             "run": run,
@@ -98,7 +98,7 @@ def robots(runs: tuple[str, ...] = ("a",)) -> pd.DataFrame:
             "arms": arms,
         }
         for run in runs
-        for robot, swarm, arms in told
+        for robot, swarm, arms in of_robots
     )
 
 
@@ -111,9 +111,7 @@ def learning_conflicts() -> pd.DataFrame:
             conflict(2, 0, second, phase="learning", action=action, q=second / 10 if second >= 10 else 0.1)
         )
         rows.append(conflict(3, 1, second, phase="learning", q=0.5))
-    rows.append(
-        conflict(3, 2, 5.0, phase="learning", action="fight")
-    )  # S2 has no bandit for it
+    rows.append(conflict(3, 2, 5.0, phase="learning", action="fight"))  # S2 has no bandit for it
     rows.append(conflict(2, 0, 25.0))  # the measured game
     return pd.DataFrame(rows)
 

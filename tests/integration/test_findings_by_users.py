@@ -28,7 +28,7 @@ def test_a_test_of_three_lines_asserts_a_finding(
     assert command
     assert invoke([*command[1].split(), "--no-figures", "--jobs", "1"]) == 0
     names: dict[str, Any] = {}
-    exec(block("test_fighters.py"), names)  # as pytest runs a file of tests, then calls what it defines
+    exec(block("test_fighters.py"), names)  # like pytest: execute the file, then call its tests
 
     (tmp_path / "fighters.toml").write_text(block("fighters.toml"), encoding="utf-8")
     names["test_fighters_gather_less"]()

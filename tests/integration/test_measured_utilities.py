@@ -34,7 +34,7 @@ def played(game: Game, record: str = "conflicts") -> GameModel:
 
 
 def test_utilities_agree_with_the_sampled_states() -> None:
-    # With a sample in each period the states themselves tell how long each robot was in A and in P.
+    # With a sample in each control period, the states give the times in A and in P.
     model = played(Game(swarms=TRIO, duration=40.0, sample_period=0.1), "conflicts,trajectory")
     tables = model.tables()
     conflicts, states = pd.DataFrame(tables["conflicts"]), pd.DataFrame(tables["trajectory"])

@@ -23,10 +23,10 @@ def rows_of_two_swarms() -> pd.DataFrame:
 
 def test_the_scatter_shows_each_robot_where_its_means_are() -> None:
     rows = rows_of_two_swarms()
-    figure = contribution_figure(rows, "who meets whom")
+    figure = contribution_figure(rows, "a title")
     pucks, time = figure.axes
     assert (pucks.get_ylabel()[-7:], time.get_ylabel()[-3:]) == ("(pucks)", "(s)")
-    assert "fig-6.4b: who meets whom, N = 16" in figure.get_suptitle()
+    assert "fig-6.4b: a title, N = 16" in figure.get_suptitle()
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert labels == ["S1: attack", "S2: inter-learner"]
     found = mean_contributions(rows)

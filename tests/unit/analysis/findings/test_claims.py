@@ -184,7 +184,6 @@ def test_a_learned_measure_without_policies_has_no_samples() -> None:
 
 
 def test_a_finding_from_a_file_is_judged(write: Any) -> None:
-    """The round of a user: a file, results, a verdict."""
     rows = [
         {"scenario": scenario, "condition": "", "n": 20, "seed": seed, "swarm": 1, "pucks": pucks + seed % 3}
         | {"t_a_intra": 1.0, "t_a_inter": 1.0, "t_p": 1.0, "conflicts_intra": 1, "conflicts_inter": 1}

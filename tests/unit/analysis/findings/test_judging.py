@@ -112,7 +112,7 @@ def test_a_share_of_robots_has_each_verdict(shares: Sequence[float], scale: floa
 
 
 def test_few_robots_without_exception_prove_no_high_share() -> None:
-    # 3 robots in each of 10 games: the exact binomial interval of 30 out of 30 begins at 88 %.
+    # 3 robots in each of 10 games: the exact binomial interval of 30 out of 30 starts at 88 %.
     results = learners([0.0], scenario="fig-6.8", opponent=2, densities=(6,))
     verdict = verdict_on(Share(quantity=WITHIN, above=99), results)
     assert (verdict.verdict, verdict.effect, verdict.high) == (UNDECIDED, 100.0, 100.0)
@@ -121,7 +121,7 @@ def test_few_robots_without_exception_prove_no_high_share() -> None:
 
 
 def test_robots_of_a_game_are_not_independent() -> None:
-    # In half of the games all attack: as many robots as with the half in each, but less is known.
+    # All robots attack in half of the games: the same share, but fewer independent observations.
     results = learners([0.5], densities=(50,), scale=0.0)
     assert results.policies is not None
     together = results.policies.assign(attack_share=results.policies["seed"] % 2)
@@ -208,12 +208,12 @@ def test_the_order_of_rows_does_not_matter() -> None:
         assert verdict_on(claim, shuffled) == verdict_on(claim, results)
 
 
-# ---------------------------------------------------------------------------------------- odds of being wrong
+# ---------------------------------------------------------------------------------------- error rates
 
 
 @pytest.mark.slow
 def test_a_tie_fails_in_at_most_5_percent_of_cases() -> None:
-    """Four densities in truth level: "at least as much at every N" is true, and "more at every N" false."""
+    """The curves are equal: "at least as much at every N" is true, "more at every N" is false."""
     at_least, clearly = [], []
     for seed in range(60):
         draws = np.random.default_rng(seed).normal(size=(10, 4))
@@ -223,10 +223,10 @@ def test_a_tie_fails_in_at_most_5_percent_of_cases() -> None:
         at_least.append(verdict_on(more(">="), Results(rows)).verdict)
         clearly.append(verdict_on(more(">"), Results(rows)).verdict)
     assert at_least.count(FAILS) <= stats.binom.ppf(0.999, 60, 0.05)
-    assert clearly.count(HOLDS) == 0  # at one density in 40, at four never
+    assert clearly.count(HOLDS) == 0  # probability 1 / 40 at one density
 
 
-# ------------------------------------------------------------------------------------------------ bad results
+# ------------------------------------------------------------------------------------------------ invalid results
 
 
 def test_duplicate_games_are_refused() -> None:
@@ -252,7 +252,7 @@ def test_an_opponent_must_be_named_among_several() -> None:
         assert verdict_on(named, results).verdict == expected
 
 
-# ------------------------------------------------------------------------------------------- the thesis's own
+# ------------------------------------------------------------------------------------------- findings of the thesis, regions
 
 
 def test_findings_without_runs_have_no_data() -> None:

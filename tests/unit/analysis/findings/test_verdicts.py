@@ -63,7 +63,7 @@ def test_too_few_seeds_decide_nothing(claim: Claim) -> None:
 
 
 def test_failing_at_one_of_many_densities_needs_more_seeds() -> None:
-    # Six seeds suffice for 95 %, but five densities take 99 %: eight.
+    # Six seeds suffice for 95 %, but five densities need 99 %, so eight.
     assert verdict_on(more(), duel(BEHIND, seeds=7)).verdict == UNDECIDED
     assert verdict_on(more(), duel(BEHIND, seeds=8)).verdict == FAILS
     assert verdict_on(more(densities=(6,)), duel(BEHIND, seeds=6)).verdict == FAILS

@@ -101,15 +101,15 @@ def test_rewards_in_the_order_of_contributions_have_rank_correlation_1(sign: int
 
 
 def test_a_correlation_within_games_is_not_one_of_the_means() -> None:
-    """A robot that happened to do well in a game was rewarded in it, but none is better than another."""
-    luck = noise(1.0)
-    luck -= luck.mean(axis=0)  # over the seeds, all are alike …
+    """Rewards follow the chance of each game, but no robot is better than another."""
+    chance = noise(1.0)
+    chance -= chance.mean(axis=0)  # all means over the seeds are 0
     rows = of_question(
-        contribution_rows(time_sud=luck + noise(0.01, seed=3), reward=luck + noise(0.01, seed=2))
+        contribution_rows(time_sud=chance + noise(0.01, seed=3), reward=chance + noise(0.01, seed=2))
     )
     found = rank_correlations(rows).set_index("measure").loc["time"]
     assert found["games"] > 0.95
-    assert abs(found["robots"]) < 0.9  # … so their means are only noise
+    assert abs(found["robots"]) < 0.9  # the means are noise
 
 
 def test_intervals_of_independent_quantities_contain_0() -> None:
@@ -120,9 +120,9 @@ def test_intervals_of_independent_quantities_contain_0() -> None:
         found = rank_correlations(of_question(contribution_rows(**draws))).set_index("measure").loc["time"]
         for name in missed:
             missed[name] += not found[f"{name}_low"] <= 0 <= found[f"{name}_high"]
-    # More than 11 of 80 happen once in a thousand times; with none at all the intervals would be too wide.
+    # More than 11 misses of 80 have a probability of 0.1 %; no miss would mean that the intervals are too wide.
     assert 1 <= missed["games"] <= 11
-    assert missed["robots"] <= 11  # a bootstrap of given robots is cautious here
+    assert missed["robots"] <= 11  # the bootstrap is conservative here
 
 
 def test_rank_correlations_need_three_different_robots() -> None:
@@ -174,8 +174,8 @@ def test_times_are_scaled_to_the_duration_with_the_robot() -> None:
 
 
 def test_without_others_or_meetings_there_is_no_share() -> None:
-    nobody = {f"mates_{what}": 0.0 for what in ("t_a", "t_a_without", "t_p", "t_p_without", "t_a_met")}
-    found = assumption(of_question(contribution_rows(**nobody, opponents_t_a_met=0.0)))
+    no_mates = {f"mates_{what}": 0.0 for what in ("t_a", "t_a_without", "t_p", "t_p_without", "t_a_met")}
+    found = assumption(of_question(contribution_rows(**no_mates, opponents_t_a_met=0.0)))
     assert found["others"].tolist() == ["opponents"]
     assert found[["share", "share_low", "share_high"]].isna().all(axis=None)
 

@@ -34,7 +34,7 @@ def test_q_is_the_latest_value_and_absent_before_the_first_trial() -> None:
     assert fight["time"].min() > 9
     assert fight["q"].iloc[-1] == pytest.approx(1.9)
     flight = q[(q["robot"] == 2) & (q["action"] == "flight")]
-    assert set(flight["q"]) == {0.1}  # kept after it was chosen no more
+    assert set(flight["q"]) == {0.1}  # kept after its last choice
     assert flight["time"].max() == fight["time"].max()
 
 

@@ -25,7 +25,7 @@ def test_an_edge_counts_the_conflicts_that_either_robot_began() -> None:
 def test_a_network_of_several_games_is_refused() -> None:
     with pytest.raises(InputError, match="conflicts='2 runs': must be of one game"):
         meeting_network(pd.concat([MET, MET.assign(run="b")]))
-    network = meeting_network(MET.drop(columns="run"))  # a DataCollector's table names none
+    network = meeting_network(MET.drop(columns="run"))  # as in the table of a DataCollector
     assert network.number_of_edges() == 3
 
 
@@ -64,9 +64,9 @@ def test_assortativity_agrees_with_networkx_and_chance_is_that_of_a_complete_gra
         network.edges[a, b].update(time=float(draws.uniform()), meetings=1, kind="inter")
     found = describe_network(network)
     assert found["assortativity"] == pytest.approx(nx.attribute_assortativity_coefficient(network, "swarm"))
-    everybody = nx.complete_graph(20)
-    nx.set_node_attributes(everybody, dict(network.nodes(data="swarm")), "swarm")
-    expected = nx.attribute_assortativity_coefficient(everybody, "swarm")
+    complete = nx.complete_graph(20)
+    nx.set_node_attributes(complete, dict(network.nodes(data="swarm")), "swarm")
+    expected = nx.attribute_assortativity_coefficient(complete, "swarm")
     assert found["chance"] == pytest.approx(expected)
     assert expected < 0
 
@@ -81,7 +81,7 @@ def test_one_swarm_has_no_assortativity() -> None:
 def test_jams_are_robots_linked_at_the_same_moment() -> None:
     over_time = jams(MET)
     assert over_time["time"].tolist() == list(range(10))
-    #       0: 0–2 | 1: 0–2 twice | 2: 2–0 | 3: 2–0 and 0–1 | 4 … 7: nobody | 8, 9: 2–3
+    #       0: 0–2 | 1: 0–2 twice | 2: 2–0 | 3: 2–0 and 0–1 | 4 … 7: none | 8, 9: 2–3
     assert over_time["largest"].tolist() == [2, 2, 2, 3, 0, 0, 0, 0, 2, 2]
     assert over_time["jams"].tolist() == [0, 0, 0, 1, 0, 0, 0, 0, 0, 0]
     assert over_time["jammed"].tolist() == [0, 0, 0, 3, 0, 0, 0, 0, 0, 0]

@@ -8,9 +8,9 @@ import pytest
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.measures.utilities import Weights, robot_utilities, utilities_by_swarm
 
-# Robots 0 and 1 are of S1, robot 2 of S2, for ten seconds. Who noticed whom:
+# Robots 0 and 1 are of S1, robot 2 of S2, for ten seconds. Their conflicts:
 #   0 at 0 s: two seconds in A; it meets 2 and sees 1 as well.
-#   2 at 1 s: three seconds in A; it meets 0, which is in A for one second more.
+#   2 at 1 s: three seconds in A; it meets 0, which stays in A for one more second.
 #   1 at 6 s: three seconds in A; it meets 0.
 ROWS = [
     {"robot": 0, "swarm": 1, "opponent": 2, "opponent_swarm": 2, "start": 0.0, "t_a": 2.0, "t_p": 8.0},
@@ -68,7 +68,7 @@ def test_a_robot_that_was_only_seen_has_utilities() -> None:
 
 
 def test_games_are_measured_separately_by_run() -> None:
-    # In the second, of three swarms, robot 1 is of S3, and does not notice.
+    # The second game has three swarms; robot 1 belongs to S3 and does not notice.
     seen = [[[], [2], [1]], [[0], [], []]]
     second = pd.DataFrame(ROWS[:2]).assign(phase="game", seen=seen, run="b")
     robots = robot_utilities(pd.concat([second, table(run="a")], ignore_index=True))

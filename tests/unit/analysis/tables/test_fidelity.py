@@ -14,7 +14,7 @@ from kswarms.analysis.tables.fidelity import against_argos, markdown_table
 def runs_of(
     pucks: Sequence[int], share: float = 0.3, scenario: str = "argos-avoid-avoid", n: int = 16, swarm: int = 1
 ) -> pd.DataFrame:
-    """One row of `runs.parquet` for each score, all with one share of time in conflict."""
+    """Return a row of `runs.parquet` for each score, with the same share of time in conflict."""
     lived = 600 * n / 2
     return pd.DataFrame(
         {
@@ -42,7 +42,7 @@ def only_row(runs: pd.DataFrame) -> pd.Series:
 
 
 def own_form(games: pd.DataFrame) -> pd.DataFrame:
-    """ARGoS games as if they were runs of ours."""
+    """Return ARGoS games in the form of `runs.parquet`."""
     parts = [
         pd.DataFrame(
             {
@@ -93,11 +93,11 @@ def test_the_interval_is_that_of_welch() -> None:
 @pytest.mark.parametrize(
     ("pucks", "fits"),
     [
-        ([31] * 20, True),  # +19 %, though 5 pucks and far outside the interval
+        ([31] * 20, True),  # +19 %, though 5 pucks, far outside the interval
         ([32] * 20, False),  # +23 %
         ([21] * 20, True),  # -19 %
         ([20] * 20, False),  # -23 %
-        ([10, 60, 35, 20, 55], True),  # +38 %, 10 pucks, but the interval holds 0
+        ([10, 60, 35, 20, 55], True),  # +38 %, 10 pucks, but the interval contains 0
     ],
 )
 def test_a_score_agrees_by_relative_difference_or_interval(pucks: list[int], fits: bool) -> None:

@@ -15,7 +15,7 @@ Column = tuple[str, str, int]  # scenario, condition, opponent of S2
 
 
 def policies(shares: Mapping[Column, Mapping[int, Sequence[float]]]) -> pd.DataFrame:
-    """Make rows of S2, which attacks with these shares (one for each seed), by column and density."""
+    """Return rows of S2 with these shares of attack (one for each seed), by column and density."""
     return pd.DataFrame(
         {
             "run": f"{scenario}-{condition}-{n}-{seed}",
