@@ -95,7 +95,7 @@ def _swarms(game: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def _conditions(games: Sequence[Mapping[str, Any]], by: Sequence[str] | None) -> list[str]:
-    """Return the condition of each game, such as ``side=2.0``: the parameters `by` (default: all that differ)."""
+    """Return the condition of each game, such as ``side=2.0``; `by` defaults to the varying parameters."""
     if by is None:
         reported = {f"{name}_{k}" for name in (*_OF_SWARM, "share_a", "share_p") for k in range(1, 100)}
         candidates = [name for name in games[0] if name not in _NO_PARAMETERS | reported]

@@ -226,7 +226,7 @@ def test_a_tie_fails_in_at_most_5_percent_of_cases() -> None:
     assert clearly.count(HOLDS) == 0  # probability 1 / 40 at one density
 
 
-# ------------------------------------------------------------------------------------------------ invalid results
+# ------------------------------------------------------------------------------------------- invalid results
 
 
 def test_duplicate_games_are_refused() -> None:
@@ -252,7 +252,7 @@ def test_an_opponent_must_be_named_among_several() -> None:
         assert verdict_on(named, results).verdict == expected
 
 
-# ------------------------------------------------------------------------------------------- findings of the thesis, regions
+# ------------------------------------------------------------------------------------------ findings, regions
 
 
 def test_findings_without_runs_have_no_data() -> None:

@@ -120,7 +120,7 @@ def test_intervals_of_independent_quantities_contain_0() -> None:
         found = rank_correlations(of_question(contribution_rows(**draws))).set_index("measure").loc["time"]
         for name in missed:
             missed[name] += not found[f"{name}_low"] <= 0 <= found[f"{name}_high"]
-    # More than 11 misses of 80 have a probability of 0.1 %; no miss would mean that the intervals are too wide.
+    # More than 11 misses of 80 have a probability of 0.1 %; without any, the intervals would be too wide.
     assert 1 <= missed["games"] <= 11
     assert missed["robots"] <= 11  # the bootstrap is conservative here
 
