@@ -1,6 +1,5 @@
 """The commands that show a game: `film`, `conflicts`, and errors of `explore`."""
 
-import sys
 from pathlib import Path
 
 import pyarrow as pa
@@ -10,6 +9,7 @@ from PIL import Image
 
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.cli import explore as explore_command
 from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.contribution.table import SCHEMA
 from kswarms.scenarios.runs.run import digest
@@ -203,7 +203,7 @@ def test_a_run_has_its_own_condition_size_and_seed(capsys: pytest.CaptureFixture
 def test_without_its_extra_explore_prints_how_to_install_it(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(sys.modules["kswarms.scenarios.cli.explore"], "find_spec", lambda _: None)
+    monkeypatch.setattr(explore_command, "find_spec", lambda _: None)
     assert invoke(["explore"]) == 2
     assert capsys.readouterr().err == (
         "kswarms: explore='solara': is not installed: pip install 'kswarms[explore]'\n"
