@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from kswarms.analysis.figures.over_n import figure_of
     from kswarms.analysis.findings import FINDINGS, Finding, judge, judge_all, read_findings
     from kswarms.analysis.results.records import read_conflicts
-    from kswarms.analysis.results.runs import Results, read_policies, read_results, read_runs
+    from kswarms.analysis.results.runs import Results, read_results
     from kswarms.model.description.game import Game, Swarm
     from kswarms.model.description.parameters import PRESETS, Parameters
     from kswarms.model.foraging import ForagingModel
@@ -50,7 +50,7 @@ _MODULES: Final = {
     "analysis.figures.over_n": ("figure_of",),
     "analysis.findings": ("FINDINGS", "Finding", "judge", "judge_all", "read_findings"),
     "analysis.results.records": ("read_conflicts",),
-    "analysis.results.runs": ("Results", "read_policies", "read_results", "read_runs"),
+    "analysis.results.runs": ("Results", "read_results"),
     "model.description.game": ("Game", "Swarm"),
     "model.description.parameters": ("PRESETS", "Parameters"),
     "model.foraging": ("ForagingModel",),
@@ -97,9 +97,7 @@ __all__ = [
     "make_policy",
     "read_conflicts",
     "read_findings",
-    "read_policies",
     "read_results",
-    "read_runs",
     "read_scenarios",
     "save",
 ]
