@@ -12,7 +12,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.agents.robot.conflict import Conflict
 from kswarms.agents.robot.krembot import Krembot
 from kswarms.model.description.game import Game
-from kswarms.model.population import controller_constants, make_robots, place, remove_robots
+from kswarms.model.population import controller_constants, make_robots, place_robots, remove_robots
 
 
 class GameState(mesa.Model):
@@ -79,7 +79,7 @@ class GameState(mesa.Model):
         self.phase = "learning" if self.begin > 0 else "game"
         self.ended = ""
         self._end_period: int | None = None
-        self.space, self.states = place(game, self.arena, self.seed, self.random)
+        self.space, self.states = place_robots(game, self.arena, self.seed, self.random)
         self._set_robots(make_robots(self, game, self.seed))
         if game.absent_from == "learning" or self.begin == 0:
             self._remove_absent()

@@ -26,7 +26,7 @@ _BATCHES: Final = (256, 4096, 4096)
 def start_poses(
     n: int, seed: int, half: float, radius: float, clearance: float, wall_clearance: float
 ) -> tuple[Floats, Floats]:
-    """Draw positions and headings, robot by robot from its own streams; policies have no influence.
+    """Draw positions (m), shape (n, 2), and headings (rad), shape (n,), from the streams of each robot.
 
     Parameters
     ----------
@@ -36,13 +36,6 @@ def start_poses(
         Half the side of the arena; radius of a body (m).
     clearance, wall_clearance : float
         Minimum gap between two bodies, and to a wall (m).
-
-    Returns
-    -------
-    positions : ndarray of float64, shape (n, 2)
-        (m)
-    headings : ndarray of float64, shape (n,)
-        (rad)
 
     Raises
     ------

@@ -35,31 +35,15 @@ def controller_constants(game: Game) -> Controller:
     )
 
 
-def place(game: Game, arena: Arena, seed: int, random: Random) -> tuple[ContinuousSpace, RobotStates]:
-    """Put the bodies of all robots into the arena, at rest.
+def place_robots(game: Game, arena: Arena, seed: int, random: Random) -> tuple[ContinuousSpace, RobotStates]:
+    """Place the bodies of all robots, at rest; return Mesa's space and the state arrays.
 
-    Parameters
-    ----------
-    game : Game
-        What is played.
-    arena : Arena
-        Where.
-    seed : int
-        Of the run.
-    random : random.Random
-        What Mesa's space asks for; nothing here draws from it.
-
-    Returns
-    -------
-    space : mesa.experimental.continuous_space.ContinuousSpace
-        Of the positions, without agents yet.
-    states : RobotStates
-        The rows of the robots, on the same array of positions.
+    Both use the same array of positions. The space has no agents yet, and nothing draws from `random`.
 
     Raises
     ------
     InputError
-        If the robots find no place.
+        If there is no room for the robots.
     """
     half, body, parameters = arena.half, game.body, game.parameters
     positions, headings = start_poses(
@@ -67,44 +51,37 @@ def place(game: Game, arena: Arena, seed: int, random: Random) -> tuple[Continuo
     )
     space = ContinuousSpace([[-half, half], [-half, half]], torus=False, random=random, n_agents=game.size)
     swarm_of = np.repeat(np.arange(len(game.swarms)), [swarm.size for swarm in game.swarms])
-    # The space's own array, so that Mesa's view of the positions is the kernel's.
     states = RobotStates(space._agent_positions, swarm_of, headings)
     states.positions[:] = positions
     return space, states
 
 
 def make_robots(model: Host, game: Game, seed: int) -> list[Krembot]:
-    """Make the robots of all swarms, each with its policy and streams.
-
-    Parameters
-    ----------
-    model : Host
-        Which they live in; its states has their rows.
-    game : Game
-        What is played.
-    seed : int
-        Of the run.
+    """Make the robots of all swarms, each with its policy and random streams.
 
     Raises
     ------
     InputError
-        If a policy cannot be made.
+        If a policy cannot be built.
     """
-    period, top_speed = game.parameters.period, game.body.top_speed
-    actions = game.action_set
+    step = game.parameters.period * game.body.top_speed
+    actions, swarms = game.action_set, len(game.swarms)
     robots: list[Krembot] = []
     for k, swarm in enumerate(game.swarms):
         factories = {spec: spec.factory(actions) for spec in parse_policies(swarm.policy)}
-        for rank, spec in enumerate(deal(swarm.policy, swarm.size)):
-            index = len(robots)
-            streams = Streams(seed, index)
-            policy = factories[spec](Setting(k, len(game.swarms), actions, streams, rank))
+        for place, spec in enumerate(deal(swarm.policy, swarm.size)):
+            number = len(robots)
+            streams = Streams(seed, number)
             robot = Krembot(
-                *(model, index, k, policy, str(spec), streams),
-                stride_program=period * top_speed * swarm.drive,
-                stride_action=period * top_speed * swarm.drive_action,
-                swarms=len(game.swarms),
-                # The package's own policies choose what they were given.
+                model,
+                number,
+                k,
+                factories[spec](Setting(k, swarms, actions, streams, place)),
+                str(spec),
+                streams,
+                stride_program=step * swarm.drive,
+                stride_action=step * swarm.drive_action,
+                swarms=swarms,
                 actions=actions if spec.is_user_defined else None,
             )
             robots.append(robot)
@@ -112,17 +89,7 @@ def make_robots(model: Host, game: Game, seed: int) -> list[Krembot]:
 
 
 def remove_robots(model: Host, robots: Sequence[Krembot], absent: Sequence[int]) -> list[Krembot]:
-    """Take robots out of a game, and return the others, whose rows close their ranks.
-
-    Parameters
-    ----------
-    model : Host
-        Which they live in.
-    robots : sequence of Krembot
-        All that are there, by number; nobody may be absent yet.
-    absent : sequence of int
-        Numbers of those who go.
-    """
+    """Remove robots by number from a complete game; return the others, which move up in the state arrays."""
     for number in absent:
         robots[number].finish(int(model.env.now))
         robots[number].remove()

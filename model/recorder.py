@@ -136,17 +136,9 @@ class Recorder:
         rows = []
         for robot in self._state.robots:
             t_a, t_p = robot.times()
-            rows.append(
-                (
-                    robot.number,
-                    robot.swarm + 1,
-                    robot.policy_name,
-                    robot.pucks,
-                    seconds(sum(t_a)),
-                    seconds(t_p),
-                    snapshot_of(robot.policy),
-                )
-            )
+            times = seconds(sum(t_a)), seconds(t_p)
+            identity = robot.number, robot.swarm + 1, robot.policy_name
+            rows.append((*identity, robot.pucks, *times, snapshot_of(robot.policy)))
         return dict(zip(_ROBOTS, map(list, zip(*rows, strict=True)), strict=True))
 
     def _trajectory(self) -> Table:

@@ -78,18 +78,14 @@ def build_arena(
 
     Parameters
     ----------
-    layout : str
+    layout, side, stations, bases
         As in `kswarms.model.description.fields.GameFields`.
     swarms : int
         Number of swarms K.
-    side : float
-        Side of the square (m); the positions of a layout scale with it.
     station_radius, base_radius : float
         (m)
     seed : int
         Seed of the run; only random stations depend on it.
-    stations, bases : sequence of (float, float)
-        Centres in place of those of the layout (m).
 
     Raises
     ------

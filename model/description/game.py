@@ -2,15 +2,9 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any, Literal, Self
+from typing import Literal, Self
 
-from pydantic import (
-    Field,
-    SerializerFunctionWrapHandler,
-    field_validator,
-    model_serializer,
-    model_validator,
-)
+from pydantic import Field, field_validator, model_validator
 
 from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
@@ -64,14 +58,6 @@ class Game(GameFields):
     def _sort(cls, absent: tuple[int, ...]) -> tuple[int, ...]:
         return tuple(sorted(absent))
 
-    @model_serializer(mode="wrap")
-    def _dump(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        fields: dict[str, Any] = handler(self)
-        if not self.absent:  # `absent_from` has no effect: equal games have equal dumps
-            fields.pop("absent", None)
-            fields.pop("absent_from", None)
-        return fields
-
     @model_validator(mode="after")
     def _check(self) -> Self:
         self._check_places()
@@ -121,6 +107,8 @@ class Game(GameFields):
             raise InputError("wall_distance", parameters.wall_distance, "must be less than half the arena")
 
     def _check_absent(self) -> None:
+        if not self.absent:  # `absent_from` has no effect: equal games are equal descriptions
+            object.__setattr__(self, "absent_from", "learning")
         for robot in self.absent:
             if not 0 <= robot < self.size:
                 raise InputError("absent", robot, f"must be a robot of the game, 0 to {self.size - 1}")
@@ -165,14 +153,7 @@ class Game(GameFields):
 
 
 def apportion(n: int, shares: Sequence[int]) -> list[int]:
-    """Divide `n` robots among swarms in proportion: by largest remainder, ties to the first.
-
-    Parameters
-    ----------
-    n : int
-        Robots in all.
-    shares : sequence of int
-        Proportions, each ≥ 1.
+    """Divide `n` robots among swarms in proportion to shares ≥ 1, by largest remainder; ties go to the first.
 
     Raises
     ------

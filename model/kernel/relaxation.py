@@ -1,9 +1,8 @@
-"""Bodies that overlap are parted by equal shares, over and over (specification, section 2.5). Compiled.
+"""Relaxation of overlapping bodies (specification, section 2.5). Compiled.
 
-Each pass works on the positions that all bodies had before it, so no robot profits from its number. A jam
-needs many, since each carries a correction one body farther: a part of the last pass's move is therefore
-added, which grows from pass to pass as in Nesterov's method (1983). What comes out is nearly what the
-passes alone come to, after a third of them.
+Each pass moves overlapping bodies apart by equal shares, based on the positions before the pass, so the order
+of the robots has no effect. A pass carries a correction one body farther, so a jam needs many passes. Adding
+a growing part of the last pass's move (Nesterov 1983) gives nearly the same result in a third of the passes.
 """
 
 import math
@@ -16,51 +15,51 @@ TOLERANCE: Final = 0.9e-4
 """Overlap at which the relaxation stops (m); the specification allows 0.1 mm."""
 
 _CLOSE: Final = 0.1
-"""Gap below which the relaxation keeps an eye on a pair, as a part of the radius."""
+"""Gap of a close pair, in radii."""
 _PLAIN_PASSES: Final = 3
-"""Passes before the relaxation gathers momentum: enough for all but jams."""
+"""Passes without momentum, which suffice except in jams."""
 _MOST_MOMENTUM: Final = 0.8
-"""Part of the last pass's move that a pass adds in the end."""
+"""Maximum fraction of the last pass's move that a pass adds."""
 _HALF_GATHERED: Final = 6
-"""Passes with momentum after which that part is a half."""
+"""Passes with momentum after which that fraction would be a half."""
 _PASSES: Final = 200
-"""Passes of the relaxation before it looks again at which pairs are close."""
+"""Passes between two searches for close pairs."""
 _ROUNDS: Final = 200
-"""Looks before it gives up."""
+"""Maximum number of searches."""
 _STUCK: Final = 1000
-"""Passes after which a straight row between walls is suspected, which none of them can part."""
+"""Passes after which the relaxation assumes a straight row between walls, which passes alone cannot part."""
 _TURN: Final = 0.01
-"""By how much the pairs of such a row are then turned (rad)."""
+"""Turn of the pairs of such a row (rad)."""
 _FORGET_AFTER: Final = 4
 _FORGET_EVERY: Final = 8
-"""Passes after which the relaxation forgets pairs at rest: most jams are resolved long before the worst."""
+"""Passes between two removals of pairs at rest: most of a jam is resolved long before its worst part."""
 _TOUCH: Final = 1e-9
-"""Overlap below which two bodies only touch: less is the rounding of bodies that were parted exactly (m)."""
+"""Maximum overlap of bodies that only touch; the rounding error of parted bodies is smaller (m)."""
 _AT_REST: Final = 1e-5
-"""Move of a pair's bodies in a pass that is too short to wait for (m)."""
+"""Maximum move of a pair at rest in one pass (m)."""
 
 
 @compiled
 def relax(positions: Floats, radius: float, half: float, work: Records, pairs: Records, n_pairs: int) -> int:
-    """Part overlapping bodies by equal shares, and keep them within the walls.
+    """Part overlapping bodies and keep them within the walls.
 
     Parameters
     ----------
     positions : ndarray of float64, shape (n, 2)
         Centres (m); written.
     radius, half : float
-        Of the bodies; half the side of the arena (m).
+        Radius of the bodies; half the side of the arena (m).
     work : ndarray of `kswarms.model.kernel.arrays.WORK`, shape (n,)
         Written.
     pairs : ndarray of `kswarms.model.kernel.arrays.PAIR`, shape (≥ n_pairs,)
-        All pairs that can overlap; written: which are close.
+        All pairs that can overlap; written: close pairs.
     n_pairs : int
-        How many there are.
+        Number of pairs.
 
     Returns
     -------
     int
-        Passes that were needed, −1 if all that there are did not do.
+        Number of passes, −1 if it did not converge.
     """
     move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
     count, limit = work["count"], half - radius
@@ -105,7 +104,7 @@ def _overlap(dx: float, dy: float, radius: float) -> bool:
 
 @compiled
 def _find_close(positions: Floats, radius: float, pairs: Records, n_pairs: int) -> tuple[int, float]:
-    """List the pairs with hardly a gap, and return their number and the greatest overlap (m)."""
+    """List the close pairs; return their number and the greatest overlap (m)."""
     first, second = pairs["first"], pairs["second"]
     close_first, close_second = pairs["close_first"], pairs["close_second"]
     reach = (2.0 + _CLOSE) * radius
@@ -124,7 +123,7 @@ def _find_close(positions: Floats, radius: float, pairs: Records, n_pairs: int) 
 
 @compiled
 def _bend(positions: Floats, radius: float, work: Records, pairs: Records, n_close: int) -> None:
-    """Turn each overlapping pair a little about its middle, all the same way, out of the row it stands in."""
+    """Turn each overlapping pair a little about its middle, all in the same sense, out of their row."""
     close_first, close_second = pairs["close_first"], pairs["close_second"]
     shove_x, shove_y = work["shove_x"], work["shove_y"]
     for c in range(n_close):
@@ -140,7 +139,7 @@ def _bend(positions: Floats, radius: float, work: Records, pairs: Records, n_clo
 
 @compiled
 def _queue_bodies(work: Records, pairs: Records, n_close: int) -> int:
-    """List the bodies of the close pairs, and return their number."""
+    """List the bodies of the close pairs; return their number."""
     close_first, close_second = pairs["close_first"], pairs["close_second"]
     queued, queue = work["queued"], work["queue"]
     for i in range(len(work)):
@@ -157,7 +156,7 @@ def _queue_bodies(work: Records, pairs: Records, n_close: int) -> int:
 
 @compiled
 def _forget_resting(positions: Floats, radius: float, work: Records, pairs: Records, n_close: int) -> int:
-    """Keep of the close pairs those that overlap or of which a body moves; return their number."""
+    """Keep the close pairs that overlap or move; return their number."""
     close_first, close_second = pairs["close_first"], pairs["close_second"]
     move_x, move_y = work["move_x"], work["move_y"]
     kept = 0
@@ -175,7 +174,7 @@ def _forget_resting(positions: Floats, radius: float, work: Records, pairs: Reco
 
 @compiled
 def _measure_overlaps(positions: Floats, radius: float, work: Records, pairs: Records, n_close: int) -> float:
-    """Add up, for each body, half of each of its overlaps; return the greatest overlap (m)."""
+    """Sum half of each overlap for each body; return the greatest overlap (m)."""
     close_first, close_second = pairs["close_first"], pairs["close_second"]
     shove_x, shove_y, count = work["shove_x"], work["shove_y"], work["count"]
     worst = 0.0
@@ -183,7 +182,7 @@ def _measure_overlaps(positions: Floats, radius: float, work: Records, pairs: Re
         i = close_first[c]
         j = close_second[c]
         dx, dy = _offset(positions, i, j)
-        # Without a branch for pairs that do not overlap: in a jam it would be guessed wrong half of the time.
+        # No branch for pairs without overlap: in a jam, half of the branch predictions would fail.
         distance = math.sqrt(dx * dx + dy * dy)
         overlap = max(0.0, 2.0 * radius - distance)
         worst = max(worst, overlap)
@@ -202,22 +201,22 @@ def _measure_overlaps(positions: Floats, radius: float, work: Records, pairs: Re
 
 @compiled
 def _momentum(done: int) -> float:
-    """Return the part of the last pass's move that a pass after `done` others adds."""
+    """Return the fraction of the last pass's move that is added after `done` passes."""
     gathered = done - _PLAIN_PASSES + 1
     return min(_MOST_MOMENTUM, max(0.0, gathered / (gathered + _HALF_GATHERED)))
 
 
 @compiled
 def _part(positions: Floats, limit: float, work: Records, n_queued: int, momentum: float) -> None:
-    """Move the queued bodies apart as measured, not beyond the walls, and forget the measures.
+    """Move the queued bodies by their summed overlaps, within the walls, and reset the sums.
 
-    A body that is free stops at once: one that went on would be flung into the next.
+    A body without overlap loses its momentum, which would push it into the next body.
     """
     move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
     count, queue = work["count"], work["queue"]
     for q in range(n_queued):
         i = queue[q]
-        # Three and more corrections at once would overshoot: twice their mean does not.
+        # The sum of three or more corrections would overshoot; twice their mean does not.
         scale = 2.0 / max(2, count[i])
         kept = momentum if count[i] > 0 else 0.0
         move_x[i] = kept * move_x[i] + scale * shove_x[i]
