@@ -131,7 +131,7 @@ def test_single_swarm(direction: int) -> None:
         (SingleSwarmWLU, "kappa", float("nan")),
     ],
 )
-def test_out_of_range(reward: type[Reward], field: str, value: object) -> None:
+def test_values_out_of_range_are_refused(reward: type[Reward], field: str, value: object) -> None:
     with pytest.raises(InputError) as caught:
         reward(**{field: value})
     assert caught.value.field == field
@@ -144,7 +144,7 @@ def test_out_of_range(reward: type[Reward], field: str, value: object) -> None:
     ("value", "allowed"),
     [(5.0, "less than"), (-1.0, "greater than"), (float("nan"), "finite"), ("much", "valid number")],
 )
-def test_out_of_range_for_one_opponent(field: str, value: object, allowed: str) -> None:
+def test_values_out_of_range_for_one_opponent_are_refused(field: str, value: object, allowed: str) -> None:
     with pytest.raises(InputError) as caught:
         WLU(**{field: {1: 0.1, 3: value}})
     assert caught.value.field.startswith(field)

@@ -235,7 +235,7 @@ def test_discounted_ucb_retries_an_arm_with_a_tiny_count(discount: float, gamma:
         (PeriodicRandom, "every", float("nan")),
     ],
 )
-def test_out_of_range(rule: type[Rule], field: str, value: float) -> None:
+def test_values_out_of_range_are_refused(rule: type[Rule], field: str, value: float) -> None:
     with pytest.raises(InputError) as caught:
         rule(**{field: value})
     assert caught.value.field == field
