@@ -21,19 +21,7 @@ class NoDataError(Exception):
 
 
 class Data:
-    """Samples of the quantities of a claim.
-
-    Attributes
-    ----------
-    results : Results
-        Their source.
-    tables : list of pandas.DataFrame
-        The quantities, as `sample` returns them.
-    densities : list of int
-        Densities at which the claim can be judged.
-    notes : list of str
-        These densities, and the missing ones.
-    """
+    """Samples of the quantities of a claim, the densities at which it can be judged, and notes on these."""
 
     def __init__(self, claim: Claim, results: Results) -> None:
         self.results = results
@@ -67,17 +55,10 @@ class Data:
 
 
 def sample(results: Results, quantity: Quantity) -> pd.DataFrame:
-    """Return a quantity by seed (rows) and N (columns), float64 in its unit.
+    """Return a quantity by seed (rows) and N (columns), ascending, float64 in its unit.
 
-    Returns
-    -------
-    pandas.DataFrame
-        Rows and columns ascend; NaN where a density was not played with a seed; empty without any value.
-
-    Raises
-    ------
-    InputError
-        A game has several values: rows occur twice, or there are several opponents and none is given.
+    NaN where a density was not played with a seed; empty without any value. It is an error if a game has
+    several values: rows occur twice, or there are several opponents and none is given.
     """
     return _by_seed(
         _learned(results, quantity) if quantity.measure in LEARNED else _measured(results, quantity)

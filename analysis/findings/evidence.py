@@ -21,16 +21,9 @@ def too_few(seeds: int, confidence: float) -> str:
 
 
 def seeds_needed(values: Values, region: Region, to_hold: float, to_fail: float) -> str:
-    """Return a note on how many more seeds would decide an undecided mean.
+    """Return a note on how many more seeds would decide, if the mean of the values is the true one.
 
-    Parameters
-    ----------
-    values : ndarray of float64, shape (seeds,)
-        Their mean is taken as the true one.
-    region : Region
-        Where the claim is true.
-    to_hold, to_fail : float
-        Levels of the intervals for the two verdicts.
+    `to_hold` and `to_fail` are the levels of the intervals for the two verdicts.
     """
     mean = float(values.mean())
     level = to_hold if region.verdict(Interval(mean, mean, mean)) == HOLDS else to_fail

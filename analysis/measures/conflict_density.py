@@ -10,12 +10,7 @@ CELL = 0.05
 def conflict_density(conflicts: pd.DataFrame, half: float = 1.0) -> np.ndarray:
     """Return the number of conflicts that begin in each cell, averaged over the games.
 
-    Parameters
-    ----------
-    conflicts : pandas.DataFrame
-        Conflicts of one or more games; the column `run`, if there is one, identifies the game.
-    half : float
-        Half the side of the arena (m).
+    The column `run`, if there is one, identifies the game; `half` is half the side of the arena (m).
 
     Returns
     -------

@@ -34,12 +34,7 @@ OTHERS: Final = ("mates", "opponents")
 def time_sud(conflicts: Mapping[str, Sequence[Any]], swarms: int) -> list[float]:
     """Return SUD in time-utility of each swarm of a game (Eq. 3.7 with 4.2 to 4.6, α = β = 1), in seconds.
 
-    Parameters
-    ----------
-    conflicts : mapping of str to sequence
-        Conflicts of one game, columns as in ``conflicts.parquet``; the learning phase does not count.
-    swarms : int
-        Number of swarms.
+    `conflicts` has the columns of ``conflicts.parquet``; the learning phase does not count.
     """
     table = pd.DataFrame({name: conflicts[name] for name in COLUMNS})
     table = table[table["phase"] == "game"]
@@ -94,12 +89,7 @@ def measures_of(rows: pd.DataFrame) -> list[str]:
 
 
 def mean_contributions(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return means over the seeds, for each robot and for the mean robot of each swarm.
-
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        As `of_question` returns them.
+    """Return means of rows of `of_question` over the seeds, for each robot and for the mean robot of a swarm.
 
     Returns
     -------
@@ -120,12 +110,7 @@ def mean_contributions(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def rank_correlations(rows: pd.DataFrame) -> pd.DataFrame:
-    """Compare the order of robots by reward with that by contribution, within each swarm.
-
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        As `of_question` returns them.
+    """Return rank correlations of reward and contribution in each swarm, from rows of `of_question`.
 
     Returns
     -------
@@ -159,11 +144,6 @@ def assumption(rows: pd.DataFrame) -> pd.DataFrame:
 
     The source assumes that all of it does (Eqs. 4.9 to 4.11). Times without the robot are scaled to the
     duration of the game with it; the durations differ only if a number of pucks ends the game.
-
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        As `of_question` returns them.
 
     Returns
     -------

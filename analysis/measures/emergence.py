@@ -18,18 +18,7 @@ BANDIT = ["swarm", "opponent_swarm"]
 
 
 def learning_conflicts(conflicts: pd.DataFrame) -> pd.DataFrame:
-    """Return the conflicts of the learning phase that were decided by bandits.
-
-    Parameters
-    ----------
-    conflicts : pandas.DataFrame
-        Conflicts of one game.
-
-    Raises
-    ------
-    InputError
-        No swarm learned.
-    """
+    """Return the conflicts of the learning phase that bandits decided; `InputError` if no swarm learned."""
     learned = conflicts[conflicts["q"].notna()]
     if learned.empty:
         raise InputError("conflicts", "no row with a Q", "must be of a game with a learner")
@@ -44,7 +33,7 @@ def choices(conflicts: pd.DataFrame, by: Sequence[str] = ()) -> pd.DataFrame:
     Parameters
     ----------
     conflicts : pandas.DataFrame
-        Conflicts of one game.
+        Conflicts of one game; `InputError` if no swarm learned.
     by : sequence of str
         Further columns to group by: ``robot``, or none.
 
@@ -54,11 +43,6 @@ def choices(conflicts: pd.DataFrame, by: Sequence[str] = ()) -> pd.DataFrame:
         One row for each `swarm`, `opponent_swarm` (int64), column of `by`, `time` (float64, s: middle of one
         of `BINS` intervals) and `action` (str), with `share` (float64) of the conflicts in that interval. An
         interval without conflicts has no row.
-
-    Raises
-    ------
-    InputError
-        No swarm learned.
     """
     rows = learning_conflicts(conflicts)
     rows = rows.assign(time=_middles(rows["start"]))
@@ -69,12 +53,7 @@ def choices(conflicts: pd.DataFrame, by: Sequence[str] = ()) -> pd.DataFrame:
 
 
 def arm_values(conflicts: pd.DataFrame) -> pd.DataFrame:
-    """Return Q of each learner's arms over the learning time (Eq. 4.15).
-
-    Parameters
-    ----------
-    conflicts : pandas.DataFrame
-        Conflicts of one game.
+    """Return Q of each learner's arms over the learning time (Eq. 4.15); `InputError` if no swarm learned.
 
     Returns
     -------
@@ -82,11 +61,6 @@ def arm_values(conflicts: pd.DataFrame) -> pd.DataFrame:
         One row for each `swarm`, `opponent_swarm`, `robot` (int64), `action` (str) and `time` (float64, s:
         middle of one of `BINS` intervals), with `q` (float64, reward per second): the latest value. An arm
         has no row before its first trial.
-
-    Raises
-    ------
-    InputError
-        No swarm learned.
     """
     rows = learning_conflicts(conflicts).dropna(subset="q").sort_values("start")
     rows = rows.assign(time=_middles(rows["start"]))
@@ -103,12 +77,7 @@ def _middles(start: pd.Series) -> np.ndarray:
 
 
 def preferences(robots: pd.DataFrame) -> pd.DataFrame:
-    """Return the arms of each learner at the end.
-
-    Parameters
-    ----------
-    robots : pandas.DataFrame
-        Rows of `robots.parquet`, of one or more games.
+    """Return the arms of each learner at the end, from rows of `robots.parquet` of one or more games.
 
     Returns
     -------

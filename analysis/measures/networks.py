@@ -19,11 +19,6 @@ SMALLEST_JAM = 3
 def meeting_network(conflicts: pd.DataFrame) -> nx.Graph:
     """Return the network of robots that met.
 
-    Parameters
-    ----------
-    conflicts : pandas.DataFrame
-        Conflicts of one game.
-
     Returns
     -------
     networkx.Graph
@@ -57,12 +52,7 @@ def meeting_network(conflicts: pd.DataFrame) -> nx.Graph:
 
 
 def describe_network(network: nx.Graph) -> dict[str, float]:
-    """Describe a network of meetings in numbers.
-
-    Parameters
-    ----------
-    network : networkx.Graph
-        As `meeting_network` returns it, with at least one edge.
+    """Return numbers that describe a network of meetings with at least one edge.
 
     Returns
     -------
@@ -94,14 +84,7 @@ def describe_network(network: nx.Graph) -> dict[str, float]:
 
 
 def mixing_matrix(network: nx.Graph, weight: str | None) -> np.ndarray:
-    """Return the meetings between each two swarms.
-
-    Parameters
-    ----------
-    network : networkx.Graph
-        As `meeting_network` returns it.
-    weight : {'time', 'meetings'}, optional
-        Attribute of a pair to sum; None counts pairs.
+    """Return the sums of a weight, ``time`` or ``meetings``, between each two swarms; None counts pairs.
 
     Returns
     -------
@@ -127,14 +110,7 @@ def _assortativity(mixing: np.ndarray) -> float:
 
 
 def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:
-    """Return jams over time: groups of robots linked by conflicts at the same moment.
-
-    Parameters
-    ----------
-    conflicts : pandas.DataFrame
-        Conflicts of one game.
-    every : float
-        Time between two moments (s).
+    """Return jams over time, every so many seconds: groups of robots linked by conflicts at the same moment.
 
     Returns
     -------

@@ -86,18 +86,10 @@ def robot_utilities(
 
 
 def utilities_by_swarm(robots: pd.DataFrame) -> pd.DataFrame:
-    """Return U_Sk and SUD_k of every swarm (Eqs. 3.5, 3.7).
+    """Return U_Sk and SUD_k of every swarm (Eqs. 3.5, 3.7), from rows of `robot_utilities`.
 
-    Parameters
-    ----------
-    robots : pandas.DataFrame
-        As `robot_utilities` returns them.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row for each swarm of `robots`: ``run`` (if given), ``swarm``, ``utility`` (U_Sk) and ``sud``
-        (SUD_k), in weighted seconds.
+    One row for each swarm: ``run`` (if given), ``swarm``, ``utility`` (U_Sk) and ``sud`` (SUD_k), in weighted
+    seconds.
     """
     games = robots.groupby("run", sort=False) if "run" in robots.columns else [(None, robots)]
     parts = []

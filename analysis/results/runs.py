@@ -68,31 +68,15 @@ def read_results(
 
 
 def read_runs(directory: Path) -> pd.DataFrame:
-    """Read `runs.parquet`: one row for each run and swarm.
+    """Read `runs.parquet`: one row for each run and swarm, at least one.
 
-    Parameters
-    ----------
-    directory : Path
-        Directory that `kswarms run --out` wrote.
-
-    Returns
-    -------
-    pandas.DataFrame
-        At least one row; the columns of the schema (docs/running.md), and further columns of the file.
-
-    Raises
-    ------
-    InputError
-        As for `kswarms.analysis.results.tables.read_table`, or there is no row.
+    The columns are those of the schema (docs/running.md) and further columns of the file; see `read_table`.
     """
     return _read_outcomes(directory, "runs")
 
 
 def read_policies(directory: Path) -> pd.DataFrame:
-    """Read `policies.parquet`: one row for each run, learning swarm, swarm learned about and action.
-
-    Parameters, returned value and errors as for `read_runs`.
-    """
+    """Read `policies.parquet`: one row for each run, learning swarm, swarm learned about and action."""
     return _read_outcomes(directory, "policies")
 
 

@@ -63,13 +63,7 @@ def read_table(
 
 
 def check_columns(rows: pd.DataFrame, table: str, required: Sequence[str]) -> pd.DataFrame:
-    """Return rows whose columns have the kinds of the schema.
-
-    Raises
-    ------
-    InputError
-        A column has gaps or is of another kind.
-    """
+    """Return rows whose columns have the kinds of the schema; refuse gaps and other kinds."""
     for name, kind, *_ in TABLES[table]:
         if name not in required:
             continue
@@ -82,13 +76,7 @@ def check_columns(rows: pd.DataFrame, table: str, required: Sequence[str]) -> pd
 
 
 def count_rows(path: Path) -> int:
-    """Return the number of rows of a Parquet file.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read.
-    """
+    """Return the number of rows of a Parquet file; `InputError` if it cannot be read."""
     with _readable(path):
         return int(pq.read_metadata(path).num_rows)
 

@@ -36,8 +36,7 @@ class PairedComparison:
     difference : Interval
         Mean of first − second, in the unit of the samples.
     d_z : float
-        Cohen's d_z: mean of the differences divided by their standard deviation. ±inf if all differences are
-        equal and not 0; 0 if all are 0.
+        Cohen's d_z, as `effect_size` returns it.
     cliffs_delta : float
         P(first > second) − P(first < second) over all pairs of values, −1 … 1.
     p_value : float
@@ -54,20 +53,7 @@ class PairedComparison:
 
 
 def compare_paired(first: ArrayLike, second: ArrayLike, confidence: float = CONFIDENCE) -> PairedComparison:
-    """Compare two samples of the same seeds.
-
-    Parameters
-    ----------
-    first, second : array_like
-        Shape (seeds,), in the same order of seeds.
-    confidence : float
-        Level of the interval of the difference.
-
-    Raises
-    ------
-    InputError
-        The samples differ in length or hold fewer than two seeds.
-    """
+    """Compare two samples of the same seeds (two or more), shape (seeds,), in the same order."""
     one, other = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
     if one.ndim != 1 or one.shape != other.shape:
         raise InputError("second", other.shape, f"must have the shape {one.shape}, one value for each seed")
@@ -91,20 +77,9 @@ def compare_paired(first: ArrayLike, second: ArrayLike, confidence: float = CONF
 
 
 def compare_independent(first: ArrayLike, second: ArrayLike, confidence: float = CONFIDENCE) -> Interval:
-    """Return the difference of two means of unrelated seeds, with Welch's interval.
+    """Return the difference of the means of two independent samples, with Welch's interval.
 
-    Parameters
-    ----------
-    first, second : array_like
-        Shapes (m,) and (n,).
-    confidence : float
-        Level of the interval.
-
-    Returns
-    -------
-    Interval
-        first − second. The bounds are NaN if a sample holds one value; the interval has width 0 if neither
-        sample varies.
+    The bounds are NaN if a sample holds one value; the interval has width 0 if neither sample varies.
     """
     one, other = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
     difference = float(one.mean() - other.mean())
@@ -119,7 +94,7 @@ def compare_independent(first: ArrayLike, second: ArrayLike, confidence: float =
 
 
 def effect_size(differences: ArrayLike) -> float:
-    """Return Cohen's d_z of paired differences; ±inf if all are equal and not 0, 0 if all are 0."""
+    """Return Cohen's d_z, mean / standard deviation; ±inf if all are equal and not 0, 0 if all are 0."""
     values = np.asarray(differences, dtype=np.float64)
     mean, deviation = float(values.mean()), float(values.std(ddof=1))
     if (values == values[0]).all():
@@ -130,7 +105,7 @@ def effect_size(differences: ArrayLike) -> float:
 def adjust_p_values(
     p_values: Sequence[float], method: Literal["holm", "benjamini-hochberg"] = "holm"
 ) -> list[float]:
-    """Correct p-values for multiple tests.
+    """Return p-values corrected for multiple tests, in the same order.
 
     Parameters
     ----------
@@ -139,16 +114,6 @@ def adjust_p_values(
     method : str
         ``holm`` controls the probability of any false finding, ``benjamini-hochberg`` the expected share of
         false findings.
-
-    Returns
-    -------
-    list of float
-        Corrected p-values in the same order.
-
-    Raises
-    ------
-    InputError
-        A p-value is not between 0 and 1, or the method is unknown.
     """
     names = {"holm": "holm", "benjamini-hochberg": "fdr_bh"}
     if method not in names:
@@ -178,11 +143,6 @@ def more_seeds(differences: ArrayLike, power: float = 0.8, confidence: float = C
     -------
     int or None
         0 if there are enough; None if a million seeds are too few.
-
-    Raises
-    ------
-    InputError
-        There are fewer than two seeds, or the power or confidence is not between 0 and 1.
     """
     values = np.asarray(differences, dtype=np.float64)
     seeds = check_seeds(values, 2)

@@ -75,7 +75,7 @@ def overtaking(
     Raises
     ------
     InputError
-        There are fewer than two densities, no seeds, or shapes that do not match.
+        There are fewer than two densities, no seeds, or the shapes do not match.
     """
     n, values = _samples(densities, differences)
     last = bootstrap_interval(values, lambda means: _last_rise(n, means), confidence)
@@ -85,26 +85,9 @@ def overtaking(
 def rank_correlation_with_n(
     densities: Sequence[int], samples: ArrayLike, confidence: float = CONFIDENCE
 ) -> Interval:
-    """Return Spearman's rank correlation of a mean curve with N, with an interval over the seeds.
+    """Return Spearman's rank correlation of a mean curve with N, 0 for a constant curve, with its interval.
 
-    Parameters
-    ----------
-    densities : sequence of int
-        N, ascending.
-    samples : array_like
-        Shape (seeds, densities).
-    confidence : float
-        Level of the interval.
-
-    Returns
-    -------
-    Interval
-        −1 … 1; 0 for a constant curve.
-
-    Raises
-    ------
-    InputError
-        There are fewer than two densities, no seeds, or shapes that do not match.
+    Parameters and errors are those of `overtaking`; `samples` are the values of the curve.
     """
     n, values = _samples(densities, samples)
     return bootstrap_interval(

@@ -28,15 +28,7 @@ RANDOM_SEED: Final = 0
 
 @dataclass(frozen=True)
 class Interval:
-    """An estimate and its confidence interval.
-
-    Attributes
-    ----------
-    estimate : float
-        Value of the statistic for all seeds.
-    low, high : float
-        Bounds of the interval, in the unit of the estimate.
-    """
+    """The value of a statistic for all seeds, and the bounds of its confidence interval."""
 
     estimate: float
     low: float
@@ -89,11 +81,6 @@ def bootstrap_intervals(
         The statistic of all seeds and its bounds. Identical seeds give an interval of width 0. With fewer
         seeds than `fewest_seeds`, the bounds are −inf and inf. Both are NaN where the statistic is NaN in any
         resample.
-
-    Raises
-    ------
-    InputError
-        There is no seed, or the confidence is not between 0 and 1.
     """
     values = np.asarray(samples, dtype=np.float64)
     seeds = check_seeds(values, 1)

@@ -15,20 +15,8 @@ CURVE = ("condition", "swarm")
 def mean_by_n(rows: pd.DataFrame, quantity: str, by: Sequence[str] = CURVE) -> pd.DataFrame:
     """Return the mean of a quantity at each density of each curve.
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        One row for each seed, with the columns `by`, ``n`` and `quantity`.
-    quantity : str
-        Column to average.
-    by : sequence of str
-        Columns that identify a curve.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row for each curve and density, sorted by `by` and ``n``: these columns, ``seeds`` (int64),
-        ``mean``, ``low``, ``high`` (float64, unit of the quantity) as `with_intervals` returns them.
+    `rows` has one row for each seed; the columns `by` identify a curve. The result is that of
+    `with_intervals` for the groups of `by` and ``n``.
     """
     return with_intervals(rows, [*by, "n"], quantity)
 

@@ -17,17 +17,9 @@ from kswarms.analysis.text_tables import with_interval
 
 
 def contribution_tables(rows: pd.DataFrame) -> list[tuple[str, list[list[str]]]]:
-    """Return the tables that `kswarms contribution` prints.
+    """Return the tables that `kswarms contribution` prints, from rows of `of_question`.
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        As `of_question` returns them.
-
-    Returns
-    -------
-    list of (str, list of list of str)
-        Title of each table and its rows of cells; the first row is the header.
+    A table is its title and its rows of cells; the first row is the header.
     """
     seeds = rows["seed"].nunique()
     by_robot = [["robot", "swarm", "SUD (pucks)", "SUD (s)", "reward (s)", "reward per second"]]

@@ -27,10 +27,7 @@ _ROUNDING = 1e-9
 def against_argos(runs: pd.DataFrame) -> pd.DataFrame:
     """Compare runs with the ARGoS games of the same policies and density.
 
-    Parameters
-    ----------
-    runs : pandas.DataFrame
-        Rows of `runs.parquet`; scenarios and densities without ARGoS games are left out.
+    Rows of `runs.parquet` without such ARGoS games are left out; `InputError` if none remains.
 
     Returns
     -------
@@ -44,11 +41,6 @@ def against_argos(runs: pd.DataFrame) -> pd.DataFrame:
         * `score_relative` (float64): difference / theirs, NaN if theirs is 0;
         * `share_ours`, `share_theirs`, `share_difference` (float64): mean shares of time in conflict;
         * `score_fits`, `share_fits` (bool): whether they agree.
-
-    Raises
-    ------
-    InputError
-        No run can be compared.
     """
     theirs = _argos_games()
     by_swarm = dict(list(theirs.groupby(_ROW)))

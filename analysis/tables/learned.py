@@ -20,12 +20,7 @@ _CELL = [*_COLUMN, "n"]
 def learned_shares(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataFrame:
     """Return the percentage of robots that learned to attack others or to flee within, by curve and density.
 
-    Parameters
-    ----------
-    policies : pandas.DataFrame
-        Rows of `policies.parquet`, as `kswarms.analysis.results.runs.read_policies` returns them.
-    scenarios : sequence of str
-        Ids of scenarios; those without learners are left out.
+    `policies` are rows of `policies.parquet`. Scenarios without learners are left out; one must have some.
 
     Returns
     -------
@@ -39,11 +34,6 @@ def learned_shares(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataF
         * `low`, `high` (float64, %): its 95 % interval, NaN for fewer than six seeds;
         * `published` (float64, %): the source's number, NaN if there is none;
         * `error` (float64, percentage points): measured − published.
-
-    Raises
-    ------
-    InputError
-        None of the scenarios has learners.
     """
     rows = policies[policies["scenario"].isin(scenarios)]
     if rows.empty:

@@ -18,24 +18,12 @@ _UNITS = {"pucks": "pucks deposited by the swarm", "sud": "SUD of S2 (pucks)"}
 def scores(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
     """Return the numbers behind the figure of a scenario (`kswarms.analysis.figures.over_n.figure_of`).
 
-    Parameters
-    ----------
-    runs : pandas.DataFrame
-        Rows of `runs.parquet`.
-    scenario : str
-        Id of the scenario.
-
     Returns
     -------
     pandas.DataFrame
         One row for each `quantity` (str: ``pucks``, ``sud`` or a kind of time share), `curve` (str: name in
         the legend) and `n` (int64), with `seeds` (int64), `mean`, `low`, `high` (float64): the mean over the
         seeds and its 95 % interval, NaN for fewer than six seeds.
-
-    Raises
-    ------
-    InputError
-        `runs` has no row of the scenario.
     """
     rows = of_scenario(runs, scenario)
     shown = quantities(scenario)
