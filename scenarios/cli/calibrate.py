@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from kswarms.scenarios.cli.options import CPUS, Jobs, parse_directory
-from kswarms.scenarios.cli.progress import track
+from kswarms.scenarios.cli.progress import play_tracked
 from kswarms.scenarios.description.text import parse_integers, split_words
 from kswarms.scenarios.runs.run import Run
 
@@ -72,10 +72,8 @@ def calibrate(
     typer.echo(f"trace:      {out / fit.TRACE}")
 
 
-def _play(workers: int, runs: Sequence[Run]) -> Generator[tuple[Run, float], None, None]:
+def _play(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, float], None, None]:
     """Play runs with one learning swarm; yield each with the share of its robots that learned to attack."""
-    from kswarms.scenarios.runs.sweep import play_all
-
-    with closing(play_all(runs, workers)) as played:
-        for run, outcome in track(played, "learning", len(runs)):
+    with closing(play_tracked(runs, jobs, "", "learning")) as played:
+        for run, outcome in played:
             yield run, outcome.policies[0]["attack_share"]

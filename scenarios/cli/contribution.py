@@ -1,8 +1,5 @@
 """``contribution``: what robots contribute to their swarm, by playing the game without them."""
 
-from collections.abc import Generator, Sequence
-from contextlib import closing
-from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -13,9 +10,7 @@ from kswarms.agents.common.limits import MOST_SEEDS
 from kswarms.scenarios.catalogue.selection import select_scenarios
 from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, complete_scenario_ids, parse_directory
 from kswarms.scenarios.cli.printing import print_table
-from kswarms.scenarios.cli.progress import track
-from kswarms.scenarios.runs.outcome import Outcome
-from kswarms.scenarios.runs.run import Run
+from kswarms.scenarios.cli.progress import play_tracked
 
 
 def contribution(
@@ -69,7 +64,7 @@ def contribution(
     from kswarms.analysis.measures.contribution import of_question, time_sud
     from kswarms.analysis.results.records import read_contributions
     from kswarms.analysis.tables.contribution import contribution_tables
-    from kswarms.scenarios.contribution.games import contributions, robots_of
+    from kswarms.scenarios.contribution.games import RECORD, contributions, robots_of
     from kswarms.scenarios.contribution.table import prepare_table, write_table
 
     numbers = robots_of(game, robots)
@@ -80,7 +75,7 @@ def contribution(
         range(first_seed, first_seed + seeds),
         absent_from,
         label=(scenario.id, name),
-        play=partial(_play, jobs),
+        play=lambda runs: play_tracked(runs, jobs, RECORD, "playing"),
         time_sud=time_sud,
     )
     typer.echo(f"table:  {write_table(out, found)}")
@@ -90,11 +85,3 @@ def contribution(
     rows = of_question(read_contributions(out), scenario=scenario.id, **question)
     for heading, (header, *lines) in contribution_tables(rows):
         print_table(heading, header, lines)
-
-
-def _play(workers: int, runs: Sequence[Run]) -> Generator[tuple[Run, Outcome], None, None]:
-    from kswarms.scenarios.contribution.games import RECORD
-    from kswarms.scenarios.runs.sweep import play_all
-
-    with closing(play_all(runs, workers, RECORD)) as played:
-        yield from track(played, "playing", len(runs))

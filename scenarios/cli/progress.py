@@ -3,14 +3,14 @@
 import json
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from contextlib import closing, contextmanager
 from typing import Any, Final, Literal, TypeVar
 
 import typer
 
 from kswarms.scenarios.cli.printing import format_duration
-from kswarms.scenarios.runs.outcome import Failure, Result
+from kswarms.scenarios.runs.outcome import Failure, Outcome, Result
 from kswarms.scenarios.runs.run import Run
 
 Kind = Literal["bar", "json", "none"]
@@ -99,6 +99,16 @@ def _bar(count: Count) -> Iterator[Callable[[str], None]]:
             progress.update(task, completed=count.worked, description=scenario, state=state)
 
         yield report
+
+
+def play_tracked(
+    runs: Sequence[Run], jobs: int, record: str, doing: str
+) -> Generator[tuple[Run, Outcome], None, None]:
+    """Play runs, as `kswarms.scenarios.runs.sweep.play_all` does, and show a progress bar."""
+    from kswarms.scenarios.runs.sweep import play_all
+
+    with closing(play_all(runs, jobs, record)) as played:
+        yield from track(played, doing, len(runs))
 
 
 def track(steps: Iterable[_Step], doing: str, total: int) -> Iterable[_Step]:

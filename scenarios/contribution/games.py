@@ -141,10 +141,10 @@ class _Measured:
     ----------
     run : str
         Its digest.
-    sud, time_sud : sequence of float
-        SUD of each swarm (pucks; s).
-    duration : float
-        Length of the measured game (s).
+    swarms : list of dict
+        Results of each swarm.
+    time_sud : sequence of float
+        SUD of each swarm in time-utility (s).
     times : dict of int to (float, float)
         T(a) and T(p) of each robot in the measured game (s).
     reward, reward_time : dict of int to float
@@ -154,9 +154,8 @@ class _Measured:
     """
 
     run: str
-    sud: Sequence[int]
+    swarms: list[dict[str, Any]]
     time_sud: Sequence[float]
-    duration: float
     times: dict[int, tuple[float, float]]
     reward: dict[int, float] = field(default_factory=lambda: defaultdict(float))
     reward_time: dict[int, float] = field(default_factory=lambda: defaultdict(float))
@@ -167,9 +166,8 @@ def _measure(run: Run, outcome: Outcome, rewards: Sequence[Reward], time_sud: Ti
     robots, conflicts, swarms = outcome.records["robots"], outcome.records["conflicts"], len(outcome.swarms)
     measured = _Measured(
         run.digest,
-        [row["sud"] for row in outcome.swarms],
+        outcome.swarms,
         time_sud(conflicts, swarms) if time_sud else [math.nan] * swarms,
-        outcome.swarms[0]["duration"],
         dict(zip(robots["robot"], zip(robots["t_a"], robots["t_p"], strict=True), strict=True)),
     )
     directions = {action.name: action.direction for action in run.game.action_set}
@@ -210,9 +208,9 @@ def _compare(game: Game, robot: int, full: _Measured, without: _Measured) -> dic
     def columns(measured: _Measured) -> dict[str, Any]:
         return {
             "run": measured.run,
-            "sud": measured.sud[swarm],
+            "sud": measured.swarms[swarm]["sud"],
             "time_sud": measured.time_sud[swarm],
-            "duration": measured.duration,
+            "duration": measured.swarms[swarm]["duration"],
             "mates_t_a": sum(measured.times[other][0] for other in mates),
             "mates_t_p": sum(measured.times[other][1] for other in mates),
             "opponents_t_a": sum(measured.times[other][0] for other in opponents),
