@@ -22,7 +22,7 @@ _NOTHING: Final = (nan, nan)
 
 
 class Learner:
-    """Learn an action against each swarm, or only against some swarms and take a fixed action against others.
+    """A policy that learns an action against each swarm, or against some with a fixed action otherwise.
 
     Parameters
     ----------
