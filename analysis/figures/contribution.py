@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from kswarms.analysis.figures.files import save
-from kswarms.analysis.figures.style import LineStyle, heading, legend_below, sheet, swarm_style
+from kswarms.analysis.figures.style import LineStyle, heading, legend_below, new_figure, swarm_style
 from kswarms.analysis.measures.contribution import (
     MEASURES,
     mean_contributions,
@@ -41,7 +41,7 @@ def contribution_figure(rows: pd.DataFrame, title: str = "") -> Figure:
     condition = f"{first['condition']}, " if first["condition"] else ""
     name = f"{heading(first['scenario'], title)}, {condition}N = {first['n']}, robots absent {absent}"
     robots, correlations = mean_contributions(rows), rank_correlations(rows)
-    with sheet(name, 5.5 * len(measures) + 1, 5.5) as figure:
+    with new_figure(name, 5.5 * len(measures) + 1, 5.5) as figure:
         panels = figure.subplots(1, len(measures), squeeze=False)[0]
         for axes, measure in zip(panels, measures, strict=True):
             axes.axhline(0, color="0.4", linewidth=1)

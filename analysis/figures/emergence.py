@@ -11,7 +11,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from kswarms.analysis.figures.style import CONDITION_COLOURS, CONDITION_MARKERS, legend_below, sheet
+from kswarms.analysis.figures.style import CONDITION_COLOURS, CONDITION_MARKERS, legend_below, new_figure
 from kswarms.analysis.measures.emergence import BANDIT, arm_values, choices, preferences
 
 
@@ -92,7 +92,7 @@ def _panels(
 ) -> Figure:
     """Draw a panel for each pair of a learning swarm and an opponent."""
     bandits = sorted({(int(swarm), int(opponent)) for swarm, opponent in rows[BANDIT].to_numpy()})
-    with sheet(title, width=max(7.0, 5.0 * len(bandits)), height=4.4) as figure:
+    with new_figure(title, width=max(7.0, 5.0 * len(bandits)), height=4.4) as figure:
         panels = figure.subplots(1, len(bandits), sharey=True, squeeze=False)[0]
         for axes, bandit in zip(panels, bandits, strict=True):
             axes.set_title(_name(bandit))

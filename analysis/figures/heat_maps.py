@@ -12,12 +12,12 @@ from matplotlib.patches import Circle
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.colours import swarm_colour
-from kswarms.analysis.figures.style import sheet
+from kswarms.analysis.figures.style import new_figure
 from kswarms.analysis.film.painter import Places
 from kswarms.analysis.measures.conflict_density import CELL, conflict_density
 
 
-def heat_maps(conflicts: pd.DataFrame, title: str = "", places: Places | None = None) -> Figure:
+def heat_map_figure(conflicts: pd.DataFrame, title: str = "", places: Places | None = None) -> Figure:
     """Draw the places where conflicts begin: all conflicts, and conflicts with each action.
 
     Parameters
@@ -52,7 +52,7 @@ def heat_maps(conflicts: pd.DataFrame, title: str = "", places: Places | None = 
     norm = LogNorm(1 / games, max(conflict_density(conflicts, half).max(), 2 / games))
     colours = colormaps["magma"].with_extremes(bad="black")
     label = f"conflicts per game and {100 * CELL:.0f} × {100 * CELL:.0f} cm"
-    with sheet(title, width=max(5.5, 4.0 * len(kinds)), height=4.4) as figure:
+    with new_figure(title, width=max(5.5, 4.0 * len(kinds)), height=4.4) as figure:
         panels = figure.subplots(1, len(kinds), squeeze=False, sharey=True)[0]
         for axes, (name, rows) in zip(panels, kinds.items(), strict=True):
             counts = conflict_density(rows, half) * (rows["run"].nunique() / games if "run" in rows else 1)

@@ -12,7 +12,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from kswarms.analysis.colours import swarm_colour
-from kswarms.analysis.figures.style import CONDITION_COLOURS, legend_below, sheet
+from kswarms.analysis.figures.style import CONDITION_COLOURS, legend_below, new_figure
 from kswarms.analysis.measures.networks import SMALLEST_JAM
 
 _WINDOW: Final = 15
@@ -40,7 +40,7 @@ def network_figure(network: nx.Graph, title: str = "") -> Figure:
     order = sorted(network, key=lambda robot: (swarm[robot], robot))
     times = nx.to_numpy_array(network, nodelist=order, weight="time")
     longest, shortest = times.max(), times[times > 0].min()
-    with sheet(title, width=11.0, height=5.6) as figure:
+    with new_figure(title, width=11.0, height=5.6) as figure:
         circle, matrix = figure.subplots(1, 2)
         places = nx.circular_layout(order)
         for kind, colour in (("intra", "0.55"), ("inter", "black")):
@@ -97,7 +97,7 @@ def jams_figure(over_time: pd.DataFrame, title: str = "") -> Figure:
         Heading.
     """
     time = over_time["time"]
-    with sheet(title, width=11.0, height=4.2) as figure:
+    with new_figure(title, width=11.0, height=4.2) as figure:
         axes = figure.subplots()
         labels = {"jammed": f"in jams of {SMALLEST_JAM} or more", "largest": "in the largest cluster"}
         for (quantity, label), colour in zip(labels.items(), CONDITION_COLOURS, strict=False):

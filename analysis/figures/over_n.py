@@ -19,9 +19,9 @@ from kswarms.analysis.figures.style import (
     draw_line,
     heading,
     legend_below,
+    new_figure,
     scale_from_zero,
     seeds_legend,
-    sheet,
 )
 from kswarms.analysis.measures.quantities import (
     TIME_SHARES,
@@ -60,7 +60,7 @@ def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "", detail: boo
         `runs` has no row of the scenario.
     """
     rows = of_scenario(runs, scenario)
-    with sheet(heading(scenario, title)) as figure:
+    with new_figure(heading(scenario, title)) as figure:
         axes = figure.subplots()
         draw_curves(axes, split_curves(rows), "pucks", detail)
         axes.set_ylabel("pucks deposited by the swarm")
@@ -76,7 +76,7 @@ def time_shares(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool
     swarms, and conflicts within the swarm.
     """
     rows = with_time_shares(of_scenario(runs, scenario))
-    with sheet(heading(scenario, title), width=11.0) as figure:
+    with new_figure(heading(scenario, title), width=11.0) as figure:
         panels: Sequence[Axes] = figure.subplots(1, len(TIME_SHARES), sharey=True)
         for axes, kind in zip(panels, TIME_SHARES, strict=True):
             draw_curves(axes, split_curves(rows), kind, detail)
@@ -100,7 +100,7 @@ def sud_over_n(
     if swarm not in swarms:
         raise InputError("swarm", swarm, f"must be one of {', '.join(map(str, swarms))} in {scenario}")
     rows = rows[rows["swarm"] == swarm]
-    with sheet(heading(scenario, title)) as figure:
+    with new_figure(heading(scenario, title)) as figure:
         axes = figure.subplots()
         axes.axhline(0, color="0.4", linewidth=1)
         draw_curves(axes, split_curves(rows), "sud", detail)
@@ -127,7 +127,7 @@ def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[st
         A curve with its 95 % interval for each scenario, condition, learning swarm and opponent. Published
         numbers are crosses of the same colour on a dotted line.
     """
-    with sheet(title) as figure:
+    with new_figure(title) as figure:
         axes = figure.subplots()
         several_opponents = cells.groupby("condition")["opponent"].nunique().max() > 1
         for index, (name, column) in enumerate(named_columns(cells)):

@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.figures.style import draw_line, legend_below, sheet, swarm_style
+from kswarms.analysis.figures.style import draw_line, legend_below, new_figure, swarm_style
 
 
 def pucks_over_time(samples: pd.DataFrame, title: str = "") -> Figure:
@@ -58,7 +58,7 @@ def _over_time(samples: pd.DataFrame, quantity: str, label: str, title: str) -> 
     swarms = sorted(int(name.rpartition("_")[2]) for name in columns)
     if not swarms or "time" not in samples:
         raise InputError("samples", list(samples), f"must have the columns time and {quantity}_1")
-    with sheet(title) as figure:
+    with new_figure(title) as figure:
         axes = figure.subplots()
         for swarm in swarms:
             draw_line(axes, samples["time"], samples[f"{quantity}_{swarm}"], swarm_style(swarm), f"S{swarm}")

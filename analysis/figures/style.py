@@ -129,7 +129,7 @@ def heading(scenario: str, title: str) -> str:
 
 
 @contextmanager
-def sheet(title: str, width: float = 7.0, height: float = 4.9) -> Iterator[Figure]:
+def new_figure(title: str, width: float = 7.0, height: float = 4.9) -> Iterator[Figure]:
     """Yield a new figure with a heading and a size in inches, in the package's style."""
     with (
         sns.axes_style("whitegrid", rc={"grid.color": "0.9"}),

@@ -9,7 +9,7 @@ from kswarms.analysis.text_tables import TextTable, span
 
 
 @dataclass(frozen=True)
-class Planned:
+class PlannedScenario:
     """The games of a scenario.
 
     Attributes
@@ -30,14 +30,14 @@ class Planned:
     seeds: int
 
 
-def coverage(runs: pd.DataFrame, plan: Mapping[str, Planned]) -> pd.DataFrame:
+def coverage(runs: pd.DataFrame, plan: Mapping[str, PlannedScenario]) -> pd.DataFrame:
     """Compare the games in the results with a plan.
 
     Parameters
     ----------
     runs : pandas.DataFrame
         Rows of `runs.parquet`.
-    plan : mapping of str to Planned
+    plan : mapping of str to PlannedScenario
         Scenarios by id.
 
     Returns
@@ -62,7 +62,7 @@ def coverage(runs: pd.DataFrame, plan: Mapping[str, Planned]) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["scenario", "games", "planned", "missing"])
 
 
-def _missing(found: pd.DataFrame, planned: Planned) -> str:
+def _missing(found: pd.DataFrame, planned: PlannedScenario) -> str:
     if found.empty:
         return "everything"
     parts = []

@@ -46,7 +46,7 @@ _NETWORK_CAPTION: Final = (
 
 
 @dataclass(frozen=True)
-class Recorded:
+class RecordedCondition:
     """A condition with recorded games: `n`, `seed` and `run` of each, as in `runs.parquet`."""
 
     scenario: str
@@ -77,25 +77,24 @@ class Recorded:
         return f"{self.name}: N = {games['n'].iloc[0]}, {seeds} seed{'s' if seeds > 1 else ''}"
 
 
-def recorded_conditions(directory: Path, runs: pd.DataFrame) -> tuple[list[Recorded], list[Recorded]]:
-    """Return the conditions with recorded conflicts, and those with recorded robots.
+def recorded_conditions(directory: Path, table: str, runs: pd.DataFrame) -> list[RecordedCondition]:
+    """Return the conditions with games in a recorded table, ``conflicts`` or ``robots``.
 
     A game that several conditions share belongs to the first of them.
     """
     order = {scenario: index for index, scenario in enumerate(dict.fromkeys(runs["scenario"]))}
-    found = []
-    for name in ("conflicts", "robots"):
-        recorded = runs[runs["run"].isin(recorded_runs(directory, name))]
-        games = recorded.drop_duplicates("run").sort_values(["n", "seed"])
-        conditions = [
-            Recorded(str(scenario), str(condition), rows)
-            for (scenario, condition), rows in games.groupby(["scenario", "condition"], sort=False)
-        ]
-        found.append(sorted(conditions, key=lambda each: (order[each.scenario], each.condition)))
-    return found[0], found[1]
+    recorded = runs[runs["run"].isin(recorded_runs(directory, table))]
+    games = recorded.drop_duplicates("run").sort_values(["n", "seed"])
+    conditions = [
+        RecordedCondition(str(scenario), str(condition), rows)
+        for (scenario, condition), rows in games.groupby(["scenario", "condition"], sort=False)
+    ]
+    return sorted(conditions, key=lambda each: (order[each.scenario], each.condition))
 
 
-def conflict_parts(directory: Path, condition: Recorded, places_of: PlacesOf) -> Iterator[tuple[str, Part]]:
+def conflict_parts(
+    directory: Path, condition: RecordedCondition, places_of: PlacesOf
+) -> Iterator[tuple[str, Part]]:
     """Show the recorded conflicts of a condition.
 
     Yields
@@ -116,7 +115,7 @@ def conflict_parts(directory: Path, condition: Recorded, places_of: PlacesOf) ->
         yield "emergence", _emergence_part(condition, with_learning, name)
 
 
-def _network_part(directory: Path, condition: Recorded, game: pd.DataFrame, name: str) -> Part:
+def _network_part(directory: Path, condition: RecordedCondition, game: pd.DataFrame, name: str) -> Part:
     part = Part(f"network-{condition.id}", condition.name)
     part.add_figure(
         part.id,
@@ -149,19 +148,19 @@ def _network_part(directory: Path, condition: Recorded, game: pd.DataFrame, name
     return part
 
 
-def _map_part(condition: Recorded, measured: pd.DataFrame, places_of: PlacesOf) -> Part:
+def _map_part(condition: RecordedCondition, measured: pd.DataFrame, places_of: PlacesOf) -> Part:
     part = Part(f"map-{condition.id}", condition.name)
     name = condition.densest_name
     part.add_figure(
         part.id,
-        heat_maps.heat_maps(measured, name, _common_places(condition, places_of)),
+        heat_maps.heat_map_figure(measured, name, _common_places(condition, places_of)),
         f"Heat maps of the places where conflicts began in the measured game, all and by action, {name}.",
         f"Places where conflicts began in the measured game, all and by action, with their numbers; {name}.",
     )
     return part
 
 
-def _common_places(condition: Recorded, places_of: PlacesOf) -> Places | None:
+def _common_places(condition: RecordedCondition, places_of: PlacesOf) -> Places | None:
     """Return the arena of the games in `densest`, None if they differ or are unknown."""
     games = condition.densest[["n", "seed"]].to_numpy().tolist()
     first, *others = (places_of(condition.scenario, condition.condition, n, seed) for n, seed in games)
@@ -170,7 +169,7 @@ def _common_places(condition: Recorded, places_of: PlacesOf) -> Places | None:
     return first
 
 
-def _emergence_part(condition: Recorded, conflicts: pd.DataFrame, name: str) -> Part:
+def _emergence_part(condition: RecordedCondition, conflicts: pd.DataFrame, name: str) -> Part:
     part = Part(f"emergence-{condition.id}", condition.name)
     part.add_figure(
         f"choices-{condition.id}",
@@ -187,7 +186,7 @@ def _emergence_part(condition: Recorded, conflicts: pd.DataFrame, name: str) -> 
     return part
 
 
-def robots_parts(directory: Path, condition: Recorded) -> Iterator[tuple[str, Part]]:
+def robots_parts(directory: Path, condition: RecordedCondition) -> Iterator[tuple[str, Part]]:
     """Yield the final Q of each robot of a condition and its chapter ``emergence``, if any robot learned."""
     robots = read_robots(directory, condition.densest["run"])
     if not robots["arms"].map(len).any():

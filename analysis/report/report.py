@@ -9,7 +9,7 @@ from typing import Final
 import pandas as pd
 
 from kswarms.analysis.findings import FINDINGS, NO_DATA, Finding, judge_all
-from kswarms.analysis.report.coverage import Planned, coverage, coverage_table
+from kswarms.analysis.report.coverage import PlannedScenario, coverage, coverage_table
 from kswarms.analysis.report.page import Chapter, Part, Report
 from kswarms.analysis.report.provenance import directory_parts, libraries_part
 from kswarms.analysis.report.record_parts import PlacesOf, conflict_parts, recorded_conditions, robots_parts
@@ -41,7 +41,7 @@ _TITLES: Final = {
 _PREFIXES: Final = ("fig-6.", "fig-7.", ARGOS)
 """Chapters of scenarios, by the prefix of the scenario's id; all others belong to the chapter `other`."""
 
-Tables = Mapping[str, tuple[str, Sequence[str]]]
+SourceTables = Mapping[str, tuple[str, Sequence[str]]]
 """Title and scenarios of each table of the source."""
 
 Step = Callable[[], Iterable[tuple[str, Part]]]
@@ -53,8 +53,8 @@ Progress = Callable[[Sequence[Step]], Iterable[Step]]
 
 def build_report(
     source: str | Path | Sweep | Results,
-    plan: Mapping[str, Planned] | None = None,
-    source_tables: Tables | None = None,
+    plan: Mapping[str, PlannedScenario] | None = None,
+    source_tables: SourceTables | None = None,
     findings: Sequence[Finding] = FINDINGS,
     places_of: PlacesOf = lambda *_: None,
     progress: Progress = iter,
@@ -65,7 +65,7 @@ def build_report(
     ----------
     source : Results, or as for `read_results`
         Results directory of `kswarms run --out`, or outcomes of a sweep, which have no recorded tables.
-    plan : mapping of str to Planned, optional
+    plan : mapping of str to PlannedScenario, optional
         Scenarios by id, in their order in the report; other scenarios of the results follow.
     source_tables : mapping of str to (str, sequence of str), optional
         Title and scenarios of each table of the source.
@@ -102,9 +102,10 @@ def build_report(
         directory = Path(source)
         name = directory.resolve().name
         parts["provenance"] += directory_parts(directory)
-        with_conflicts, with_robots = recorded_conditions(directory, results.runs)
-        steps += [partial(conflict_parts, directory, condition, places_of) for condition in with_conflicts]
-        steps += [partial(robots_parts, directory, condition) for condition in with_robots]
+        for condition in recorded_conditions(directory, "conflicts", results.runs):
+            steps.append(partial(conflict_parts, directory, condition, places_of))
+        for condition in recorded_conditions(directory, "robots", results.runs):
+            steps.append(partial(robots_parts, directory, condition))
     for step in progress(steps):
         for chapter, part in step():
             parts[chapter].append(part)
@@ -124,7 +125,7 @@ def _verdicts(results: Results, findings: Sequence[Finding], planned: bool) -> I
 
 
 def _scenario_steps(
-    results: Results, plan: Mapping[str, Planned], tables: Tables, covered: pd.DataFrame
+    results: Results, plan: Mapping[str, PlannedScenario], tables: SourceTables, covered: pd.DataFrame
 ) -> Iterator[Step]:
     """Yield a step for each scenario with runs, in the order of the plan."""
     missing = dict(zip(covered["scenario"], covered["missing"], strict=True))
@@ -137,7 +138,7 @@ def _scenario_steps(
             yield partial(_in_chapter, scenario, scenario_part, results, *words)
 
 
-def _table_steps(results: Results, tables: Tables) -> Iterator[Step]:
+def _table_steps(results: Results, tables: SourceTables) -> Iterator[Step]:
     """Yield a step for each table of the source with results of at least one of its scenarios."""
     if results.policies is not None:
         learned = set(results.policies["scenario"])

@@ -17,7 +17,7 @@ import pandas as pd
 import seaborn as sns
 
 from kswarms import ForagingModel
-from kswarms.analysis.figures.heat_maps import heat_maps
+from kswarms.analysis.figures.heat_maps import heat_map_figure
 from kswarms.analysis.figures.networks import jams_figure, network_figure
 from kswarms.analysis.measures.networks import describe_network, jams, meeting_network, mixing_matrix
 
@@ -68,7 +68,7 @@ jams_figure(jams(conflicts), "36 robots, S1 avoids, S2 attacks")
 # Conflicts begun in each cell of 5 × 5 cm, on a logarithmic scale: all of them, and those with each action.
 
 # %%
-heat_maps(conflicts, "36 robots, S1 avoids, S2 attacks", places=model.arena)
+heat_map_figure(conflicts, "36 robots, S1 avoids, S2 attacks", places=model.arena)
 
 # %% [markdown]
 # ## What changes with the number of robots

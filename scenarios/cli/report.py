@@ -35,7 +35,7 @@ def report(
     Example: kswarms report results --out report.html
     """
     from kswarms.analysis.findings import FINDINGS, read_findings
-    from kswarms.analysis.report import Planned, build_report
+    from kswarms.analysis.report import PlannedScenario, build_report
 
     path = out or directory / "report.html"
     if out is not None and not path.parent.is_dir():
@@ -45,7 +45,7 @@ def report(
         if finding.id in {each.id for each in FINDINGS}:
             raise InputError("findings.id", finding.id, "must not be that of a finding of the thesis")
     plan = {
-        name: Planned(each.title, tuple(c.name for c in each.conditions), each.densities, each.seeds)
+        name: PlannedScenario(each.title, tuple(c.name for c in each.conditions), each.densities, each.seeds)
         for name, each in CATALOGUE.items()
     }
     built = build_report(

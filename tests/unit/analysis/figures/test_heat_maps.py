@@ -4,14 +4,14 @@ import pytest
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.figures.files import encode
-from kswarms.analysis.figures.heat_maps import heat_maps
+from kswarms.analysis.figures.heat_maps import heat_map_figure
 from kswarms.model.description.arena import build_arena
 from tests.helpers.result_rows import PLACED
 
 
 def test_heat_maps_of_all_and_of_each_action_share_a_scale() -> None:
     arena = build_arena("symmetric", 2, 2.0, 0.16, 0.17, 0)
-    figure = heat_maps(PLACED, "t", arena)
+    figure = heat_map_figure(PLACED, "t", arena)
     *panels, colours = figure.axes
     assert [axes.get_title() for axes in panels] == ["all: 4", "fight: 1", "flight: 3"]
     limits = {axes.images[0].get_clim() for axes in panels}
@@ -24,15 +24,15 @@ def test_heat_maps_of_all_and_of_each_action_share_a_scale() -> None:
 
 
 def test_heat_map_of_one_action_without_places() -> None:
-    panel, _ = heat_maps(PLACED[PLACED["action"] == "flight"].drop(columns="run")).axes
+    panel, _ = heat_map_figure(PLACED[PLACED["action"] == "flight"].drop(columns="run")).axes
     assert panel.get_title() == "all: 3"
     assert panel.get_xlim() == (-1.0, 1.0)
     assert list(panel.texts) == []
     with pytest.raises(InputError, match="must hold at least one conflict"):
-        heat_maps(PLACED.head(0))
+        heat_map_figure(PLACED.head(0))
 
 
 def test_maps_without_places_show_all_conflicts_of_a_large_arena() -> None:
-    panel, *_ = heat_maps(PLACED.assign(x=-3.2)).axes
+    panel, *_ = heat_map_figure(PLACED.assign(x=-3.2)).axes
     assert panel.get_xlim() == panel.get_ylim() == (-3.5, 3.5)
     assert panel.images[0].get_array().sum() == 2.0

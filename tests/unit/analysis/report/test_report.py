@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.findings import Verdict
-from kswarms.analysis.report.coverage import Planned, coverage, coverage_table
+from kswarms.analysis.report.coverage import PlannedScenario, coverage, coverage_table
 from kswarms.analysis.report.page import Chapter, Part, Report
 from kswarms.analysis.report.provenance import directory_parts, libraries_part
 from kswarms.analysis.report.record_parts import conflict_parts, recorded_conditions
@@ -21,9 +21,9 @@ from tests.helpers.html_page import Page
 from tests.helpers.result_rows import MET, runs_of
 
 PLAN = {
-    "fig-x": Planned("x", ("",), (6, 16), 4),
-    "fig-y": Planned("y", ("a", "b"), (6, 16, 26), 4),
-    "fig-z": Planned("z", ("",), (6,), 20),
+    "fig-x": PlannedScenario("x", ("",), (6, 16), 4),
+    "fig-y": PlannedScenario("y", ("a", "b"), (6, 16, 26), 4),
+    "fig-z": PlannedScenario("z", ("",), (6,), 20),
 }
 
 
@@ -133,29 +133,29 @@ def test_a_shared_game_belongs_to_the_first_condition(tmp_path: Path) -> None:
     runs = pd.concat([first, first[first["condition"] == "x"].assign(scenario="fig-a")])
     wanted = runs[runs["n"] == 16]["run"].unique()
     pd.DataFrame({"run": wanted}).to_parquet(tmp_path / "conflicts.parquet")
-    conflicts, robots = recorded_conditions(tmp_path, runs)
-    assert [(curve.scenario, curve.condition) for curve in conflicts] == [("fig-b", "x"), ("fig-b", "y")]
-    assert [curve.id for curve in conflicts] == ["fig-b--x", "fig-b--y"]
+    conflicts = recorded_conditions(tmp_path, "conflicts", runs)
+    assert [(each.scenario, each.condition) for each in conflicts] == [("fig-b", "x"), ("fig-b", "y")]
+    assert [each.id for each in conflicts] == ["fig-b--x", "fig-b--y"]
     assert conflicts[0].densest["seed"].tolist() == [0, 1, 2, 3]
-    assert robots == []
+    assert recorded_conditions(tmp_path, "robots", runs) == []
 
 
 def test_random_stations_are_not_drawn_into_the_common_map(tmp_path: Path) -> None:
     runs = runs_of("fig-x", densities=[16], seeds=2)
     games = [MET.assign(run=run) for run in runs["run"].unique()]
     pd.concat(games).to_parquet(tmp_path / "conflicts.parquet")
-    (curve,), _ = recorded_conditions(tmp_path, runs)
+    (condition,) = recorded_conditions(tmp_path, "conflicts", runs)
 
     def drawn(layout: str, monkeypatch: pytest.MonkeyPatch) -> list[bool]:
         shown: list[bool] = []
 
-        def heat_maps(conflicts: pd.DataFrame, title: str, places: Arena | None) -> Figure:
+        def heat_map_figure(conflicts: pd.DataFrame, title: str, places: Arena | None) -> Figure:
             shown.append(places is not None)
             return Figure()
 
-        monkeypatch.setattr("kswarms.analysis.figures.heat_maps.heat_maps", heat_maps)
+        monkeypatch.setattr("kswarms.analysis.figures.heat_maps.heat_map_figure", heat_map_figure)
         chapters = conflict_parts(
-            tmp_path, curve, lambda *key: build_arena(layout, 2, 2.0, 0.16, 0.17, key[-1])
+            tmp_path, condition, lambda *key: build_arena(layout, 2, 2.0, 0.16, 0.17, key[-1])
         )
         assert [chapter for chapter, _ in chapters] == ["networks", "maps"]
         return shown
