@@ -102,10 +102,10 @@ def build_report(
         directory = Path(source)
         name = directory.resolve().name
         parts["provenance"] += directory_parts(directory)
-        for condition in recorded_conditions(directory, "conflicts", results.runs):
-            steps.append(partial(conflict_parts, directory, condition, places_of))
-        for condition in recorded_conditions(directory, "robots", results.runs):
-            steps.append(partial(robots_parts, directory, condition))
+        with_conflicts = recorded_conditions(directory, "conflicts", results.runs)
+        with_robots = recorded_conditions(directory, "robots", results.runs)
+        steps += [partial(conflict_parts, directory, condition, places_of) for condition in with_conflicts]
+        steps += [partial(robots_parts, directory, condition) for condition in with_robots]
     for step in progress(steps):
         for chapter, part in step():
             parts[chapter].append(part)
