@@ -1,7 +1,7 @@
-"""The catalogue: a scenario for every figure of the source's chapters 6 and 7, and the tables made of them.
+"""The catalogue: a scenario for every figure of chapters 6 and 7 of the source, and their tables.
 
-Each entry is data (specification, 3.2 and 3.3); `words` only saves repetition, so that a scenario reads as a
-row of the specification's tables: id, title, S1, S2 and what differs from the default world.
+Each scenario reads as a row of the tables of the specification (3.2 and 3.3): id, title, swarms and the
+differences from the default world.
 """
 
 from typing import Final, NamedTuple
@@ -11,19 +11,11 @@ from kswarms.scenarios.catalogue.chapter_6 import SYMMETRIC
 from kswarms.scenarios.catalogue.chapter_7 import DISADVANTAGED
 
 CATALOGUE: Final = {scenario.id: scenario for scenario in (*SYMMETRIC, *DISADVANTAGED, *ARGOS)}
-"""Every scenario by its id, in the order of the source."""
+"""Scenarios by id, in the order of the source."""
 
 
 class SourceTable(NamedTuple):
-    """A table of the source: what the swarms of some figures have learned.
-
-    Attributes
-    ----------
-    title : str
-        What it shows, in a line.
-    scenarios : tuple of str
-        Ids of the figures that it tabulates; its own id stands for them.
-    """
+    """A table of the source: learned policies of some figures; `scenarios` are their ids."""
 
     title: str
     scenarios: tuple[str, ...]
@@ -36,4 +28,4 @@ TABLES: Final = {
     "table-7.1": SourceTable("Learned to attack, of figure 7.4", ("fig-7.4",)),
     "table-7.2": SourceTable("Learned to attack, of figures 7.16a and 7.16b", ("fig-7.16a", "fig-7.16b")),
 }
-"""Every table by its id, in the order of the source."""
+"""Tables by id, in the order of the source."""

@@ -1,4 +1,4 @@
-"""The controller of the ARGoS measurements, to compare the physics (docs/fidelity.md)."""
+"""Scenarios with the controller of the ARGoS measurements, to compare the physics (docs/fidelity.md)."""
 
 from typing import Any, Final
 
@@ -19,4 +19,4 @@ ARGOS: Final = (
              conditions=curve(AVOID, ATTACK, **IN_ARGOS)),
 )
 # fmt: on
-"""Every scenario that was also played in ARGoS."""
+"""Scenarios that were also simulated in ARGoS."""

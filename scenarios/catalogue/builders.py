@@ -1,4 +1,4 @@
-"""The words in which the catalogue is written: swarms, learners, curves; so a scenario reads as data."""
+"""Short constructors of swarms, learners and curves for the catalogue."""
 
 from collections.abc import Mapping
 from typing import Any, Final
@@ -13,47 +13,37 @@ _LEARNS_BY: Final = {"reward": "wlu", "rule": "ucb"}
 
 
 def swarm(policy: str, **rule: Any) -> SwarmRule:
-    """Return a swarm that drives as the others do."""
+    """Return a swarm with the default drives."""
     return SwarmRule(policy=policy, **rule)
 
 
 def fast(policy: str, **rule: Any) -> SwarmRule:
-    """Return a swarm with the advantage of sections 7.2 and 7.3: it drives at 70 % in state P alone."""
-    return SwarmRule(policy=policy, drive=0.7, drive_action=0.6, **rule)
+    """Return a swarm with the advantage of sections 7.2 and 7.3: a drive of 70 % in state P."""
+    return SwarmRule(policy=policy, drive=0.7, **rule)
 
 
 def learner(about: str = "inter-learner", reward: str = "wlu", rule: str = "ucb", **rest: Any) -> SwarmRule:
-    """Return a swarm that learns.
-
-    Parameters
-    ----------
-    about : {'inter-learner', 'intra-learner', 'learner'}
-        Policy: about other swarms, the own, or both.
-    reward, rule : str
-        As `reward_of` and `rule_of` write them.
-    **rest
-        Other fields of the swarm.
-    """
+    """Return a swarm of learners; `about` is the name of their policy, `rest` are its other fields."""
     return swarm(_call(about, _LEARNS_BY, {"reward": reward, "rule": rule}), **rest)
 
 
 def reward_of(name: str = "wlu", **arguments: Any) -> str:
-    """Return a reward with those of its arguments that are not its defaults."""
+    """Return the text of a reward, without arguments at their defaults."""
     return _call(name, _defaults(REWARDS[name]), arguments)
 
 
 def rule_of(name: str, **arguments: Any) -> str:
-    """Return a selection rule with those of its arguments that are not its defaults."""
+    """Return the text of a selection rule, without arguments at their defaults."""
     return _call(name, _defaults(RULES[name]), arguments)
 
 
 def curve(*swarms: SwarmRule, **world: Any) -> tuple[Condition, ...]:
-    """Return the one curve of a scenario that has no other."""
+    """Return the only curve of a scenario."""
     return curves({"": swarms}, **world)
 
 
 def curves(swarms: Mapping[str, tuple[SwarmRule, ...]], **world: Any) -> tuple[Condition, ...]:
-    """Return a condition for each name, with these swarms; whoever learns is given the time to."""
+    """Return a condition for each name, with a learning phase if a swarm learns."""
     return tuple(
         Condition(
             name=name,
@@ -66,11 +56,11 @@ def curves(swarms: Mapping[str, tuple[SwarmRule, ...]], **world: Any) -> tuple[C
 
 
 def _call(name: str, defaults: Mapping[str, Any], arguments: Mapping[str, Any]) -> str:
-    """Write a call without what is default anyway, so that the same game has the same text and digest."""
+    """Return the text of a call without default arguments, so that equal games have equal texts."""
     given = []
     for key, value in arguments.items():
         default = defaults[key]
-        if isinstance(value, dict):  # of an opponent's swarm-ID
+        if isinstance(value, dict):  # values by swarm-ID of the opponent
             value = {opponent: own for opponent, own in value.items() if own != default} or default
         if value != default:
             given.append(f"{key}={value!r}")

@@ -82,4 +82,4 @@ SYMMETRIC: Final = (
                  | {"learner": (learner("intra-learner", reward="single-swarm"),)}, **ALONE)),
 )
 # fmt: on
-"""Every scenario of chapter 6, in the order of the source."""
+"""Scenarios of chapter 6, in the order of the source."""

@@ -1,4 +1,4 @@
-"""A disadvantaged S2: slower, fewer, or further from a station (chapter 7; specification, section 3.3)."""
+"""A disadvantaged S2: slower, smaller, or farther from a station (chapter 7; specification, section 3.3)."""
 
 from typing import Any, Final
 
@@ -7,7 +7,7 @@ from kswarms.scenarios.description.condition import SwarmRule
 from kswarms.scenarios.description.scenario import Scenario
 
 ADVANTAGE: Final = 7 / 6
-"""b of Eq. 7.2: the opponent's program time is worth this much of the learner's."""
+"""Advantage b of the opponent, β_m/β_i (Eq. 7.2)."""
 
 AVOID, ATTACK = swarm("avoid"), swarm("attack")
 FAST_AVOID, FAST_ATTACK, FAST_MIXED = fast("avoid"), fast("attack"), fast("mixed")
@@ -26,7 +26,7 @@ def _by_delta(first: SwarmRule, *deltas: float) -> dict[str, tuple[SwarmRule, ..
 
 
 def _three(second: SwarmRule) -> tuple[SwarmRule, ...]:
-    """Return S2 between halves of a mixed swarm; of an odd half the extra robot goes to S1 (section 2.4)."""
+    """Return `second` between the halves of a mixed swarm; S1 gets the extra robot of an odd number."""
     return FAST_AVOID, second.replace(share=2), fast("aggressive")
 
 
@@ -79,4 +79,4 @@ DISADVANTAGED: Final = (
                                 "avoid": (ATTACK, AVOID)}, **NEARER_STATION)),
 )
 # fmt: on
-"""Every scenario of chapter 7, in the order of the source."""
+"""Scenarios of chapter 7, in the order of the source."""

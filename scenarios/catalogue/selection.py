@@ -17,13 +17,7 @@ USUAL_N: Final = 20
 
 
 def select_scenarios(ids: Iterable[str]) -> list[Scenario]:
-    """Return scenarios by their ids, each once.
-
-    Parameters
-    ----------
-    ids : iterable of str
-        Ids of scenarios, ids of tables, which stand for all their scenarios, and paths of files that end in
-        ``.toml``.
+    """Return the scenarios of ids and ``.toml`` files, each once; a table stands for all its scenarios.
 
     Raises
     ------
@@ -50,7 +44,7 @@ def _from_catalogue(name: str) -> list[Scenario]:
 def with_densities_and_seeds(
     scenarios: Iterable[Scenario], densities: Sequence[int], seeds: int | None, suitable_only: bool
 ) -> tuple[list[Scenario], list[str]]:
-    """Replace the densities and the number of seeds of scenarios.
+    """Return scenarios with other densities or seeds, and the ids of scenarios that are left out.
 
     Parameters
     ----------
@@ -63,13 +57,6 @@ def with_densities_and_seeds(
     suitable_only : bool
         Whether densities that do not suit a scenario are dropped for it instead of refused. A scenario
         without a suitable density is left out.
-
-    Returns
-    -------
-    scenarios : list of Scenario
-        The changed scenarios.
-    left_out : list of str
-        Ids of scenarios without a suitable density.
 
     Raises
     ------

@@ -67,7 +67,7 @@ def everything(model: GameModel) -> str:
 # Absent from the very beginning.
 
 
-def test_all_others_keep_number_place_heading_policy_and_streams() -> None:
+def test_the_other_robots_keep_number_place_heading_policy_and_streams() -> None:
     what = game("mixed", "learner", "random", size=5)
     whole = GameModel(what, 3)
     rest = GameModel(what.replace(absent=(0, 7, 8)), 3)
@@ -86,7 +86,7 @@ def test_all_others_keep_number_place_heading_policy_and_streams() -> None:
 
 @settings(max_examples=8)
 @given(seed=st.integers(0, 10**6), absent=st.integers(0, 5))
-def test_nothing_changes_for_anybody_until_one_comes_near(seed: int, absent: int) -> None:
+def test_nothing_changes_until_a_robot_comes_near_the_absent_one(seed: int, absent: int) -> None:
     what = game("avoid", "attack", size=3, learning=0.0, body="krembot")
     whole, rest = GameModel(what, seed), GameModel(what.replace(absent=(absent,)), seed)
     gone = whole.robots[absent]
@@ -100,7 +100,7 @@ def test_nothing_changes_for_anybody_until_one_comes_near(seed: int, absent: int
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_whom_one_meets_lives_on_differently_without_it(seed: int) -> None:
+def test_robots_that_met_the_absent_one_move_differently_without_it(seed: int) -> None:
     whole, rest = (play(game(absent=absent), seed) for absent in ((), (4,)))
     assert world(rest) != world(whole, (4,))
 
@@ -119,7 +119,7 @@ def test_the_empty_game_of_one_robot_is_without_conflicts() -> None:
 
 
 @pytest.mark.parametrize("absent", [(0,), (3, 11), (6, 7, 8, 9, 10, 11)])
-def test_removal_at_the_switch_leaves_the_learning_alone(absent: tuple[int, ...]) -> None:
+def test_removal_at_the_switch_does_not_change_the_learning_phase(absent: tuple[int, ...]) -> None:
     whole = at_the_switch(game(supply=9), record="conflicts")
     rest = at_the_switch(game(supply=9, absent=absent, absent_from="game"))
     assert json.dumps(rows_of(rest, "learning")) == json.dumps(rows_of(whole, "learning"))
@@ -132,7 +132,7 @@ def test_removal_at_the_switch_leaves_the_learning_alone(absent: tuple[int, ...]
     assert world(rest) != world(whole, absent)
 
 
-def test_who_is_gone_neither_acts_nor_is_met() -> None:
+def test_a_removed_robot_neither_acts_nor_is_met() -> None:
     absent = (2, 5, 6, 11)
     model = play(game("attack", "learner", absent=absent, absent_from="game"), seed=1)
     learned, played = rows_of(model, "learning"), rows_of(model, "game")
@@ -149,7 +149,7 @@ def test_who_is_gone_neither_acts_nor_is_met() -> None:
     assert all(seen == (there if time >= 30 else set(range(12))) for time, seen in samples.items())
 
 
-def test_mesa_knows_who_is_there() -> None:
+def test_mesa_lists_the_robots_in_the_game() -> None:
     model = at_the_switch(game(absent=(1, 8), absent_from="game"))
     assert list(model.agents) == model.robots == list(model.space.agents)
     model.env.run(until=350)
@@ -162,7 +162,7 @@ def test_mesa_knows_who_is_there() -> None:
         assert {*near} == {other for other, d in distances.items() if d <= 0.5 and other is not robot}
 
 
-def test_a_robot_blocked_by_another_drives_on_when_it_is_gone() -> None:
+def test_a_blocked_robot_drives_on_after_the_removal() -> None:
     """Two aggressive robots of two swarms, head to head, until one of them leaves."""
     reached = {}
     for absent in ((), (1,)):
@@ -183,7 +183,7 @@ def test_a_robot_blocked_by_another_drives_on_when_it_is_gone() -> None:
     assert reached[1,] == pytest.approx(10 * 0.015)
 
 
-def test_an_absent_robots_puck_is_in_nobodys_balance() -> None:
+def test_the_puck_of_an_absent_robot_is_not_counted() -> None:
     took_one = False
     for seed in range(4):
         absent = (0, 1, 2, 6)
@@ -196,7 +196,7 @@ def test_an_absent_robots_puck_is_in_nobodys_balance() -> None:
     assert took_one
 
 
-def test_times_of_those_who_are_there_add_up() -> None:
+def test_times_of_the_present_robots_add_up() -> None:
     for since in WAYS:
         model = play(game("attack", "learner", absent=(0, 9, 10), absent_from=since, puck_limit=3))
         measured = model.env.now - 300
@@ -219,7 +219,7 @@ def test_without_learning_both_are_the_same() -> None:
 
 
 @pytest.mark.parametrize("preempt", [False, True])
-def test_who_met_nobody_may_leave_early_or_late(preempt: bool) -> None:
+def test_a_robot_without_conflicts_may_be_removed_early_or_late(preempt: bool) -> None:
     """It is the same world, whether the robot was never there or leaves before it came near anybody."""
     compared = 0
     for seed in range(12):
@@ -241,14 +241,7 @@ def test_who_met_nobody_may_leave_early_or_late(preempt: bool) -> None:
     assert compared >= 2
 
 
-@pytest.mark.parametrize("since", WAYS)
-def test_same_seed_same_bytes(since: str) -> None:
-    what = game("attack", "learner", absent=(1, 7), absent_from=since)
-    first, again, other = (everything(play(what, seed)) for seed in (4, 4, 5))
-    assert first == again != other
-
-
-def test_closing_ranks_keeps_whom_a_robot_has_met() -> None:
+def test_removal_keeps_the_latest_opponents() -> None:
     states = RobotStates(np.zeros((5, 2)), np.array([0, 0, 1, 1, 1]), np.arange(5.0))
     states.robots["opponent"] = [-1, 4, 1, 0, 3]
     memory = states.robots

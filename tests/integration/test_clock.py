@@ -114,7 +114,7 @@ def test_one_timeout_for_each_leg_turn_flight_and_fight(monkeypatch: pytest.Monk
 
 @pytest.mark.parametrize("preempt", [False, True])
 @pytest.mark.parametrize("record", ["", "model"])
-def test_there_are_hardly_any_other_events(
+def test_there_are_few_other_events(
     preempt: bool, record: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     trace = Trace(make_game(preempt=preempt), monkeypatch, record)
@@ -161,7 +161,7 @@ def test_a_leg_takes_its_draw_in_whole_periods_rounded_up(monkeypatch: pytest.Mo
         assert len(legs) > 10
 
 
-def test_a_sample_sees_the_world_as_the_last_period_left_it() -> None:
+def test_a_sample_sees_the_world_after_the_previous_period() -> None:
     model = GameModel(make_game().replace(sample_period=0.1), seed=SEED, record="trajectory,conflicts")
     model.play()
     tables = model.tables()
@@ -213,7 +213,7 @@ def test_the_clock_run_by_hand_keeps_all_records() -> None:
 
 
 @pytest.mark.parametrize("puck_limit", [None, 2])
-def test_a_game_that_is_over_stays_so(puck_limit: int | None) -> None:
+def test_a_game_that_has_ended_stays_ended(puck_limit: int | None) -> None:
     model = GameModel(make_game().replace(puck_limit=puck_limit), seed=SEED)
     model.play()
     results = model.results()

@@ -32,16 +32,28 @@ GAMES = {
         parameters=PRESETS["argos"].replace(preempt=True, push_share=0.5),
         duration=20.0,
     ),
+    "learning": Game(
+        swarms=(Swarm(policy="learner", size=6), Swarm(policy="inter-learner(rule='greedy')", size=6)),
+        learning=40.0,
+        duration=20.0,
+    ),
+    "absent": Game(
+        swarms=(Swarm(policy="attack", size=6), Swarm(policy="learner+random", size=6)),
+        learning=40.0,
+        duration=20.0,
+        absent=(1, 7),
+        absent_from="game",
+    ),
 }
 
 
 def digest(job: tuple[str, int]) -> str:
-    """Play a game with everything recorded, and return a digest of every byte that comes out."""
+    """Play a game with all records, and return a digest of its results."""
     name, seed = job
     model = GameModel(GAMES[name].replace(sample_period=5.0), seed, record=ALL)
     model.play()
     outcome = model.results(), model.tables(), model.datacollector.model_vars
-    # By way of text, since pickle also writes down which equal objects are one and the same.
+    # As text: pickle also stores which equal objects are identical.
     return hashlib.sha256(repr(outcome).encode()).hexdigest()
 
 
@@ -61,7 +73,7 @@ def test_the_same_seed_gives_the_same_bytes_in_four_fresh_processes_in_any_order
     assert len(set(here.values())) == len(jobs)
 
 
-def test_global_generators_are_neither_used_nor_moved() -> None:
+def test_global_generators_are_not_used() -> None:
     random.seed(1)
     np.random.seed(1)  # noqa: NPY002  # the very generator that nothing may touch
     state = pickle.dumps((random.getstate(), np.random.get_state()))  # noqa: NPY002
@@ -74,7 +86,7 @@ def test_global_generators_are_neither_used_nor_moved() -> None:
 
 @pytest.mark.parametrize("name", GAMES)
 @pytest.mark.parametrize(("record", "sample_period"), [("", 10.0), ("model", 0.1), (ALL, 3.7), (ALL, 1e9)])
-def test_looking_does_not_change_the_game(name: str, record: str, sample_period: float) -> None:
+def test_recording_does_not_change_the_game(name: str, record: str, sample_period: float) -> None:
     game = GAMES[name]
     plain, watched = GameModel(game, 7), GameModel(game.replace(sample_period=sample_period), 7, record)
     plain.env.run()
@@ -111,11 +123,11 @@ def test_a_seed_names_the_start_whatever_is_played(changes: dict[str, object]) -
 
 
 @pytest.mark.parametrize("changes", [{"seed": 5}, {"n": 14}, {"side": 2.1}])
-def test_another_world_starts_otherwise(changes: dict[str, object]) -> None:
+def test_other_worlds_start_differently(changes: dict[str, object]) -> None:
     assert not np.array_equal(start(**changes)[0], start()[0])
 
 
-def test_one_robot_more_leaves_the_others_alone() -> None:
+def test_one_more_robot_does_not_change_the_others() -> None:
     fewer, more = (start(policies="avoid", n=n)[0] for n in (12, 13))
     assert (more[:12] == fewer).all()
 

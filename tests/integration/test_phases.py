@@ -10,14 +10,12 @@ from typing import Any
 import pytest
 from simpy.core import StopSimulation
 
-from kswarms.agents.actions import AWAY, TOWARDS, Action
+from kswarms.agents.actions import AWAY, Action
 from kswarms.agents.policies.saved import snapshot_of
 from kswarms.agents.robot.state import ACTION
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.description.parameters import PRESETS
-from kswarms.model.foraging import ForagingModel
 from kswarms.model.game_model import GameModel
-from kswarms.model.recorder import policy_rows
 
 LEARNING, MEASURED = 120.0, 60.0
 SWITCH = 1200
@@ -62,10 +60,6 @@ def rows_of(model: GameModel, phase: str) -> list[Row]:
     return [row for row in rows if row["phase"] == phase]
 
 
-def everything(model: GameModel) -> str:
-    return json.dumps([model.results(), model.tables(), world(model).hex()])
-
-
 def events(model: GameModel) -> Iterator[None]:
     """Have the clock process one event after the other, to the end of the game."""
     with suppress(StopSimulation):
@@ -99,7 +93,7 @@ def test_the_switch_changes_nothing_in_the_world(policies: str, preempt: bool) -
     assert before[1] + phased.picked_up == whole.picked_up
 
 
-def test_what_a_learner_draws_disturbs_nobody() -> None:
+def test_draws_of_a_learner_do_not_change_other_streams() -> None:
     """Random choice among actions that are the same leaves every other draw of every robot alone."""
     for policy in (
         "learner(rule='uniform-random')",
@@ -150,7 +144,7 @@ def test_times_and_pucks_of_the_measured_game_add_up(policies: str, end: dict[st
     assert model.pucks == [sum(robot.pucks for robot in members) for members in model.members]
 
 
-def test_an_action_under_way_is_split_at_the_switch() -> None:
+def test_a_running_action_is_split_at_the_switch() -> None:
     model = at_the_switch(game("attack", "attack"))
     acting = [robot for robot in model.robots if robot.state == "A"]
     assert acting
@@ -283,18 +277,6 @@ def test_samples_show_both_phases() -> None:
 # The same again.
 
 
-@pytest.mark.parametrize(
-    "policies", ["attack,learner", "avoid,inter-learner(rule='uniform-random')", "learner,random"]
-)
-def test_same_seed_same_bytes(policies: str) -> None:
-    swarms = {"n": 12, "policies": policies, "learning": 60.0, "duration": 30.0}
-    runs = [ForagingModel(**swarms, seed=seed, record="conflicts,robots,trajectory") for seed in (4, 4, 5)]
-    for model in runs:
-        model.play()
-    assert everything(runs[0]) == everything(runs[1])
-    assert everything(runs[0]) != everything(runs[2])
-
-
 def test_sampling_does_not_change_what_is_learned() -> None:
     what = game("attack", "learner", sample_period=0.7)
     seen = [GameModel(what, 2, record=record) for record in ("", "model,agents,conflicts")]
@@ -304,34 +286,3 @@ def test_sampling_does_not_change_what_is_learned() -> None:
     assert repr(learned[0]) == repr(learned[1])
     assert world(seen[0]) == world(seen[1])
     assert seen[0].results() == seen[1].results()
-
-
-def test_a_swarm_alone_learns_among_four_actions() -> None:
-    actions = (
-        *ONE_AND_THE_SAME,
-        Action(name="fight", direction=TOWARDS, duration=1.0),
-        Action(name="long-fight", direction=TOWARDS, duration=3.0),
-    )
-    model = play(game("learner(reward='single-swarm')", size=12, actions=actions))
-    rows = rows_of(model, "learning")
-    assert {row["action"] for row in rows} == {action.name for action in actions}
-    for row in rows:
-        expected = row["active"] / 8 * (row["t_p"] - 3 * row["t_a"])
-        assert row["reward"] == pytest.approx(expected, abs=1e-9) or math.isnan(row["reward"])
-    shares = {row["action"]: row["share"] for row in policy_rows(model)}
-    assert set(shares) == {action.name for action in actions}
-    assert sum(shares.values()) == pytest.approx(1.0)
-
-
-def test_the_shares_of_what_was_learned_are_those_of_the_robots() -> None:
-    model = play(game("avoid", "learner", "inter-learner+aggressive"), seed=1)
-    rows = {(row["swarm"], row["opponent"], row["action"]): row for row in policy_rows(model)}
-    pairs = [(2, 1), (2, 2), (2, 3), (3, 1), (3, 2)]
-    assert set(rows) == {(*pair, action) for pair in pairs for action in ("flight", "fight")}
-    for (swarm, opponent, action), row in rows.items():
-        policies = [robot.policy for robot in model.members[swarm - 1]]
-        learners = [policy for policy in policies if opponent - 1 in getattr(policy, "bandits", {})]
-        assert len(learners) == {2: 6, 3: 3}[swarm]
-        chosen = [policy.learned(opponent - 1).name for policy in learners]
-        assert row["share"] == chosen.count(action) / len(chosen)
-        assert row["attack_share"] == rows[swarm, opponent, "fight"]["share"]

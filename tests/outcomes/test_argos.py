@@ -60,7 +60,7 @@ def test_the_scores_agree(comparison: pd.DataFrame) -> None:
         ("argos-avoid-avoid", "conflict_distance=0.05", 26, "share_fits"),  # who sees less fights less
     ],
 )
-def test_another_world_does_not_agree(scenario: str, change: str, n: int, verdict: str) -> None:
+def test_other_parameters_do_not_agree(scenario: str, change: str, n: int, verdict: str) -> None:
     original = CATALOGUE[scenario]
     (condition,) = original.conditions
     changed = original.replace(conditions=(condition.replace(parameters=f"argos, {change}"),))

@@ -48,7 +48,7 @@ def may_be_zero(values: Sequence[float] | Values) -> bool:
     return bool(abs(values.mean()) <= 2.7 * values.std(ddof=1) / math.sqrt(len(values)))
 
 
-def test_the_interval_tells_a_difference_from_none() -> None:
+def test_the_interval_detects_a_difference() -> None:
     noise = np.random.default_rng(0).normal(size=60)
     assert may_be_zero(noise - noise.mean())
     assert not may_be_zero(noise - noise.mean() + 0.5)
@@ -102,7 +102,7 @@ def correlations_with_index(models: Sequence[GameModel], of: Callable[[Krembot],
 @pytest.mark.parametrize(
     ("policies", "n"), [("avoid,avoid", 20), ("avoid,attack", 36), ("aggressive,attack", 40)]
 )
-def test_no_number_is_favoured(policies: str, n: int) -> None:
+def test_the_order_of_robots_has_no_effect(policies: str, n: int) -> None:
     models = [play(make_game(policies, n, duration=300.0), seed) for seed in range(50)]
     assert may_be_zero(correlations_with_index(models, lambda robot: robot.pucks))
     assert may_be_zero(correlations_with_index(models, lambda robot: sum(robot.t_a)))
@@ -276,7 +276,7 @@ def test_an_exchanged_game_is_the_game_exchanged(
     assert sum(distance < 1e-6 for distance in apart) >= 3, apart
 
 
-def test_a_rule_that_favours_a_number_parts_the_games(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_effect_of_the_order_on_a_game_is_detected(monkeypatch: pytest.MonkeyPatch) -> None:
     choose = Krembot._vacant_direction
     monkeypatch.setattr(
         Krembot, "_vacant_direction", lambda robot, vacant: choose(robot, vacant) + 1e-3 * (robot.index == 3)

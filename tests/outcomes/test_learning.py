@@ -150,7 +150,7 @@ def test_the_more_robots_the_more_learn_to_attack(figure: str, outcomes: Outcome
 
 @each_sample
 @pytest.mark.parametrize("scenario", ["fig-6.4a", "fig-6.4b"])
-def test_almost_nobody_learns_to_attack_where_robots_are_few_and_most_do_where_they_are_many(
+def test_few_learn_to_attack_at_low_density_and_most_at_high_density(
     scenario: str, sample: Sample, outcomes: Outcomes
 ) -> None:
     policies = outcomes(sample, scenario).policies

@@ -1,7 +1,6 @@
 """Bodies in contact obey section 2.5: whatever the state, and in cases whose outcome is known on paper."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,14 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.distance import pdist
 
-from kswarms.agents.body import KREMBOT_SIM, SENSORS
-from kswarms.agents.common.arrays import Floats, Integers
+from kswarms.agents.body import KREMBOT_SIM
+from kswarms.agents.common.arrays import Floats
 from kswarms.agents.robot.state import ACTION
-from kswarms.model.description.game import Game, Swarm
-from kswarms.model.description.parameters import PRESETS
-from kswarms.model.kernel.arrays import CONFLICT, HOMING, PICK_UP
 from tests.reference.contacts import Ground, translate
-from tests.reference.states import Scene, clone, make_scene, mirrored, scenes, unit
+from tests.reference.states import Scene, clone, crowded, game_of, make_scene, scenes, unit
 
 R = KREMBOT_SIM.radius
 STRIDE = 0.015
@@ -27,11 +23,6 @@ angles = st.floats(-math.pi, math.pi)
 frictions = st.sampled_from((0.0, 0.18, 0.45, 1.5))
 
 
-def game_of(n: int, friction: float = 0.18, push_share: float = 0.0) -> Game:
-    parameters = PRESETS["fitted"].replace(friction=friction, push_share=push_share)
-    return Game(swarms=(Swarm(policy="avoid", size=n),), parameters=parameters)
-
-
 def drive(scene: Scene, periods: int = 1) -> Floats:
     """Move the robots of a scene, none of which decides anything; return by how much each was displaced."""
     before = scene.states.positions.copy()
@@ -39,31 +30,6 @@ def drive(scene: Scene, periods: int = 1) -> Floats:
     while tick < periods:
         tick, _ = advance(tick, periods)
     return scene.states.positions - before
-
-
-def play_period(scene: Scene) -> dict[tuple[int, int], tuple[int, int, int, float]]:
-    """Play one period without decisions; return what each robot was told, by (robot, kind)."""
-    kernel, told = scene.kernel(), {}
-    while size := kernel.advance(0, 1)[1]:
-        for robot, kind, other, active, vacant, angle in kernel.events[:size].tolist():
-            told[robot, kind] = (
-                other if kind in (CONFLICT, PICK_UP) else 0,
-                active if kind == CONFLICT else 0,
-                vacant if kind == CONFLICT else 0,
-                angle if kind in (CONFLICT, HOMING) else 0.0,
-            )
-    return told
-
-
-def crowded(scene: Scene) -> Scene:
-    """Play two periods, after which many bodies touch, and have the robots perceive nothing from now on.
-
-    A robot that touches two has no nearest one: the last bit would choose.
-    """
-    for _ in range(2):
-        play_period(scene)
-    scene.states.robots["phase"] = ACTION
-    return replace(scene, game=scene.game.replace(parameters=scene.game.parameters.replace(preempt=False)))
 
 
 # ----------------------------------------------------------------------------------------- whatever the state
@@ -89,7 +55,7 @@ def test_bodies_stay_apart_and_inside(scene: Scene) -> None:
 
 @settings(deadline=None, max_examples=300)
 @given(scenes(), st.integers(0, 2**32 - 1))
-def test_the_outcome_does_not_hang_on_the_last_bit(scene: Scene, seed: int) -> None:
+def test_the_outcome_does_not_depend_on_the_last_bit(scene: Scene, seed: int) -> None:
     # Bodies that were stopped, or parted, just touch: whether they overlap by 1e-17 m must not matter.
     scene = crowded(scene)
     other = clone(scene)
@@ -98,7 +64,7 @@ def test_the_outcome_does_not_hang_on_the_last_bit(scene: Scene, seed: int) -> N
 
 
 @pytest.mark.parametrize("second", [(2 * R - 1.1e-4, 0.0), (1.0 - R + 1e-9, 0.0), (0.5, R - 1.001)])
-def test_bodies_that_overlap_or_stick_in_a_wall_are_found(second: tuple[float, float]) -> None:
+def test_overlapping_bodies_are_detected(second: tuple[float, float]) -> None:
     assert_apart(np.array([[0.0, 0.0], [2 * R - 0.9e-4, 0.0]]), R, 1.0)
     with pytest.raises(AssertionError):
         assert_apart(np.array([[0.0, 0.0], second]), R, 1.0)
@@ -125,7 +91,7 @@ def pair(
 
 @settings(deadline=None, max_examples=50)
 @given(angles, st.floats(0, 0.01), st.floats(-1.5, 1.5), st.floats(-1.5, 1.5), frictions, st.floats(0, 1))
-def test_two_that_drive_apart_part_freely(
+def test_two_robots_that_drive_apart_are_not_slowed(
     direction: float, gap: float, turn: float, other_turn: float, friction: float, push_share: float
 ) -> None:
     scene, _ = pair(direction, gap, (math.pi + turn, other_turn), (STRIDE, STRIDE), friction, push_share)
@@ -135,7 +101,7 @@ def test_two_that_drive_apart_part_freely(
 
 @settings(deadline=None, max_examples=50)
 @given(angles, st.floats(0, 0.01), st.floats(-1.5, 1.5), frictions)
-def test_a_contact_takes_the_normal_part_and_its_friction(
+def test_a_contact_removes_the_normal_motion_and_friction(
     direction: float, gap: float, turn: float, friction: float
 ) -> None:
     scene, normal = pair(direction, gap, (turn, 0.0), (STRIDE, 0.0), friction)
@@ -150,7 +116,7 @@ def test_a_contact_takes_the_normal_part_and_its_friction(
 
 @settings(deadline=None, max_examples=50)
 @given(angles, st.floats(0, 0.01), st.floats(0, 1), frictions)
-def test_a_push_moves_who_stands_by_its_share(
+def test_a_push_moves_a_standing_robot_by_the_push_share(
     direction: float, gap: float, push_share: float, friction: float
 ) -> None:
     scene, normal = pair(direction, gap, (0.0, 0.0), (STRIDE, 0.0), friction, push_share)
@@ -161,7 +127,7 @@ def test_a_push_moves_who_stands_by_its_share(
 
 @settings(deadline=None, max_examples=50)
 @given(angles, st.floats(0, 0.01), st.floats(0.2, 1))
-def test_two_that_meet_share_the_gap_by_speed(direction: float, gap: float, part: float) -> None:
+def test_two_robots_that_meet_share_the_gap_by_speed(direction: float, gap: float, part: float) -> None:
     scene, normal = pair(direction, gap, (0.0, math.pi), (STRIDE, part * STRIDE))
     free = min(gap, (1 + part) * STRIDE) / (1 + part)
     np.testing.assert_allclose(drive(scene), (free * normal, -free * part * normal), rtol=0, atol=EXACT)
@@ -169,7 +135,7 @@ def test_two_that_meet_share_the_gap_by_speed(direction: float, gap: float, part
 
 @settings(deadline=None, max_examples=50)
 @given(st.integers(0, 3), st.floats(0, 0.01), st.floats(-1.5, 1.5), frictions, st.floats(0, 1))
-def test_a_wall_takes_the_normal_part_and_its_friction(
+def test_a_wall_removes_the_normal_motion_and_friction(
     side: int, gap: float, turn: float, friction: float, push_share: float
 ) -> None:
     outwards = unit(side * math.pi / 2).round()
@@ -224,7 +190,7 @@ def test_a_straight_row_from_wall_to_wall_gives_way(turn: float, across: float) 
     assert np.abs(scene.states.positions).max() <= 1 - R + EXACT
 
 
-def test_what_cannot_be_parted_is_told() -> None:
+def test_bodies_that_cannot_be_parted_are_an_error() -> None:
     # A hundred bodies that have grown since they were placed: they would cover more than there is.
     side = np.linspace(R - 1, 1 - R, 10)
     scene = make_scene(game_of(100), np.array([(x, y) for x in side for y in side]), 0.0, STRIDE)
@@ -255,67 +221,3 @@ def test_a_robot_between_a_wall_and_another_is_not_frozen(turn: float, place: fl
     positions = (1 - R, 0.0) - np.outer((0, 2.01 * R), unit(place))
     scene = make_scene(game_of(2, friction), positions, [math.pi / 2 + turn, 0.0], STRIDE)
     assert drive(scene, 60)[0, 1] > R
-
-
-# ------------------------------------------------------------------------------------------------- symmetries
-
-
-def assert_permuted(scene: Scene, image: Scene, order: Integers) -> None:
-    """Check that robot k of the image does what robot ``order[k]`` of the scene does."""
-    told, image_told = play_period(scene), play_period(image)
-    assert {(order[robot], kind) for robot, kind in image_told} == set(told)
-    for (robot, kind), (other, *rest) in image_told.items():
-        assert (order[other] if kind == CONFLICT else other, *rest) == told[order[robot], kind]
-    np.testing.assert_allclose(image.states.positions, scene.states.positions[order], rtol=0, atol=1e-9)
-    assert (image.states.robots["heading"] == scene.states.robots["heading"][order]).all()
-
-
-@settings(deadline=None, max_examples=300)
-@given(scenes(), st.integers(0, 2**32 - 1))
-def test_no_number_is_favoured(scene: Scene, seed: int) -> None:
-    order = np.random.default_rng(seed).permutation(len(scene.states.positions))
-    for state in (clone(scene), crowded(scene)):
-        for numbers in (order, np.sort(order)[::-1]):
-            assert_permuted(clone(state), clone(state, numbers), numbers)
-
-
-def assert_mirrored(scene: Scene, image: Scene) -> None:
-    """Check that two scenes end as each other's mirror image."""
-    told, image_told = play_period(scene), play_period(image)
-    assert set(image_told) == set(told)
-    for key, (other, active, vacant, angle) in image_told.items():
-        sensors = sum(1 << (-s % SENSORS) for s in range(SENSORS) if vacant >> s & 1)
-        assert (other, active, sensors) == told[key][:3]
-        assert math.remainder(angle + told[key][3], 2 * math.pi) == pytest.approx(0, abs=1e-9)
-    np.testing.assert_allclose(image.states.positions, scene.states.positions * (-1, 1), rtol=0, atol=1e-9)
-    turned = image.states.robots["heading"] + scene.states.robots["heading"] - math.pi
-    np.testing.assert_allclose(np.sin(turned / 2), 0, atol=1e-9)
-
-
-@settings(deadline=None, max_examples=300)
-@given(scenes())
-def test_a_mirrored_state_has_a_mirrored_outcome(scene: Scene) -> None:
-    for state in (clone(scene), crowded(scene)):
-        assert_mirrored(clone(state), mirrored(state))
-
-
-def touching() -> Scene:
-    """Return two robots that touch, one at rest."""
-    return make_scene(game_of(2), [(0.0, 0.0), (2 * R, 0.001)], [0.8, 1.0], np.array((STRIDE, 0.0)))
-
-
-def test_a_favoured_number_is_found() -> None:
-    order = np.array((1, 0))
-    assert_permuted(touching(), clone(touching(), order), order)
-    favoured = clone(touching(), order)
-    favoured.states.robots["stride"][1] *= 1.001
-    with pytest.raises(AssertionError):
-        assert_permuted(touching(), favoured, order)
-
-
-def test_a_bent_mirror_is_found() -> None:
-    assert_mirrored(touching(), mirrored(touching()))
-    bent = mirrored(touching())
-    bent.states.robots["stride"][0] *= 1.001
-    with pytest.raises(AssertionError):
-        assert_mirrored(touching(), bent)

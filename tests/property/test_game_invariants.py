@@ -212,7 +212,7 @@ def dense_game(policies: str, n: int, preempt: bool = False) -> Game:
 @pytest.mark.parametrize(
     "policies", ["avoid,avoid", "avoid,attack", "attack,attack", "flight,fight", "attack,flight"]
 )
-def test_outside_fights_nobody_is_frozen(policies: str) -> None:
+def test_robots_that_do_not_fight_keep_moving(policies: str) -> None:
     # 22 s is the longest seen in 4 games of 300 s of each kind.
     for seed, n in enumerate((50, 70, 80)):
         assert longest_stay(GameModel(dense_game(policies, n), seed), 300.0, fights_count=False) < 45
@@ -221,7 +221,7 @@ def test_outside_fights_nobody_is_frozen(policies: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("policies", ["attack,attack", "aggressive,aggressive", "mixed,avoid"])
 @pytest.mark.parametrize("preempt", [False, True])
-def test_what_holds_fighters_is_the_fight(policies: str, preempt: bool) -> None:
+def test_fighters_are_held_by_their_fight(policies: str, preempt: bool) -> None:
     # The fighters lock, some for as long as one looks; as soon as they flee, all of them come free.
     stayed = []
     for seed, n in enumerate((50, 70, 80)):

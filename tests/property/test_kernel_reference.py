@@ -76,7 +76,7 @@ def test_a_game_equals_the_reference(game: Game) -> None:
     assert sum(t_a for k in range(len(game.swarms)) for t_a in model.times(k)[0]) > 0
 
 
-def test_long_calls_use_the_neighbours_of_now() -> None:
+def test_long_calls_use_current_neighbours() -> None:
     # Few robots, far apart: many periods in one call, in which everyone leaves the cells that the lists know.
     game = make_game("avoid,attack", 3, FITTED.replace(leg_mean=60, wall_distance=0.3), "krembot", 200)
     _, calls = play_compared(game, seed=3)
@@ -86,7 +86,7 @@ def test_long_calls_use_the_neighbours_of_now() -> None:
 # ------------------------------------------------------------------------------ what the comparison must find
 
 
-def test_a_stale_neighbour_list_is_found() -> None:
+def test_a_stale_neighbour_list_is_detected() -> None:
     game = make_game("avoid,attack", 10, FITTED, "krembot-sim", 60)
     with pytest.raises(AssertionError):
         play_compared(game, seed=1, spoil_skin=100.0)
@@ -95,7 +95,7 @@ def test_a_stale_neighbour_list_is_found() -> None:
 @pytest.mark.parametrize(
     "change", [{"friction": 0.2}, {"push_share": 0.1}, {"conflict_distance": 0.2}, {"active_range": 0.25}]
 )
-def test_a_rule_that_differs_is_found(change: dict[str, float]) -> None:
+def test_a_different_rule_is_detected(change: dict[str, float]) -> None:
     game = make_game("avoid,aggressive", 15, FITTED, "krembot-sim", 60)
     other = game.replace(parameters=game.parameters.replace(**change))
     model = GameModel(game, seed=1)
@@ -140,20 +140,20 @@ def test_equal_events_pass() -> None:
         (3, {"kind": HOMING}),
     ],
 )
-def test_an_event_that_differs_is_found(index: int, change: dict[str, Any]) -> None:
+def test_a_different_event_is_detected(index: int, change: dict[str, Any]) -> None:
     expected = list(EVENTS)
     expected[index] = expected[index]._replace(**change)
     with pytest.raises(AssertionError):
         assert_same_events(events_of_a_kernel(), expected)
 
 
-def test_an_event_too_many_is_found() -> None:
+def test_an_extra_event_is_detected() -> None:
     with pytest.raises(AssertionError):
         assert_same_events(events_of_a_kernel(), list(EVENTS[:-1]))
 
 
 @pytest.mark.parametrize("field", ["positions", "heading", "forward_x", "forward_y"])
-def test_a_state_that_differs_is_found(field: str) -> None:
+def test_a_different_state_is_detected(field: str) -> None:
     states = RobotStates(np.zeros((2, 2)), np.zeros(2, dtype=np.int64), np.zeros(2))
     state = State.of(states)
     assert_same_state(states, state)

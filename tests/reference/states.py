@@ -12,6 +12,7 @@ from kswarms.agents.robot.state import ACTION, IDLE, RobotStates
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game, Swarm, apportion
 from kswarms.model.description.parameters import PRESETS
+from kswarms.model.kernel.arrays import CONFLICT, HOMING, PICK_UP
 from kswarms.model.kernel.kernel import Kernel
 
 _TRIES = 200
@@ -139,3 +140,33 @@ def mirrored(scene: Scene) -> Scene:
     flip = np.array((-1.0, 1.0))
     arena = replace(scene.arena, stations=scene.arena.stations * flip, bases=scene.arena.bases * flip)
     return replace(image, arena=arena)
+
+
+def game_of(n: int, friction: float = 0.18, push_share: float = 0.0) -> Game:
+    parameters = PRESETS["fitted"].replace(friction=friction, push_share=push_share)
+    return Game(swarms=(Swarm(policy="avoid", size=n),), parameters=parameters)
+
+
+def play_period(scene: Scene) -> dict[tuple[int, int], tuple[int, int, int, float]]:
+    """Play one period without decisions; return what each robot was told, by (robot, kind)."""
+    kernel, told = scene.kernel(), {}
+    while size := kernel.advance(0, 1)[1]:
+        for robot, kind, other, active, vacant, angle in kernel.events[:size].tolist():
+            told[robot, kind] = (
+                other if kind in (CONFLICT, PICK_UP) else 0,
+                active if kind == CONFLICT else 0,
+                vacant if kind == CONFLICT else 0,
+                angle if kind in (CONFLICT, HOMING) else 0.0,
+            )
+    return told
+
+
+def crowded(scene: Scene) -> Scene:
+    """Play two periods, after which many bodies touch, and have the robots perceive nothing from now on.
+
+    A robot that touches two has no nearest one: the last bit would choose.
+    """
+    for _ in range(2):
+        play_period(scene)
+    scene.states.robots["phase"] = ACTION
+    return replace(scene, game=scene.game.replace(parameters=scene.game.parameters.replace(preempt=False)))

@@ -66,7 +66,7 @@ def test_the_other_arguments_reach_the_game() -> None:
     assert model.supply == [7, 7]
 
 
-def test_a_number_of_numpy_will_do() -> None:
+def test_numpy_numbers_are_accepted() -> None:
     assert ForagingModel(n=np.int64(12), seed=np.int64(3), duration=np.float64(20)).game.size == 12  # type: ignore[arg-type]
 
 

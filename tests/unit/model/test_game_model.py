@@ -63,7 +63,7 @@ def test_positions_are_the_kernels_own_memory() -> None:
     assert all((robot.position != start).any() for robot, start in zip(model.robots, before, strict=True))
 
 
-def test_a_robot_that_is_put_elsewhere_is_there() -> None:
+def test_setting_a_position_moves_the_robot() -> None:
     model = GameModel(GAME)
     model.env.run(until=5)
     model.robots[0].position = np.array([0.31, -0.27])
@@ -71,7 +71,7 @@ def test_a_robot_that_is_put_elsewhere_is_there() -> None:
     assert math.dist(model.robots[0].position, (0.31, -0.27)) < 0.02
 
 
-def test_neighbour_queries_are_true_at_any_time() -> None:
+def test_neighbour_queries_are_right_at_any_time() -> None:
     model = GameModel(GAME)
     for until in (1, 40, 133):
         model.env.run(until=until)
@@ -195,7 +195,7 @@ def test_the_trajectory() -> None:
         (",".join(RECORDS), {"conflicts", "robots", "trajectory"}, True, True),
     ],
 )
-def test_only_what_is_asked_for_is_recorded(
+def test_only_requested_records_are_kept(
     record: str, tables: set[str], model_vars: bool, agents: bool
 ) -> None:
     model = played(record)

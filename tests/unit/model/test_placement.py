@@ -16,7 +16,7 @@ RADIUS, CLEARANCE, WALL_CLEARANCE = 0.085, 0.01, 0.005
 
 @settings(max_examples=40)
 @given(st.integers(1, 70), st.integers(0, 2**64), st.sampled_from([1.0, 1.3]))
-def test_nobody_overlaps_or_touches_a_wall(n: int, seed: int, half: float) -> None:
+def test_starting_places_do_not_overlap_and_lie_inside_the_walls(n: int, seed: int, half: float) -> None:
     positions, headings = start_poses(n, seed, half, RADIUS, CLEARANCE, WALL_CLEARANCE)
     assert positions.shape == (n, 2)
     assert headings.shape == (n,)
@@ -26,13 +26,13 @@ def test_nobody_overlaps_or_touches_a_wall(n: int, seed: int, half: float) -> No
     assert np.abs(headings).max() <= math.pi
 
 
-def test_more_robots_leave_the_first_where_they_were() -> None:
+def test_more_robots_do_not_move_the_first_ones() -> None:
     fewer, more = (start_poses(n, 7, 1.0, RADIUS, CLEARANCE, WALL_CLEARANCE) for n in (20, 50))
     assert (more[0][:20] == fewer[0]).all()
     assert (more[1][:20] == fewer[1]).all()
 
 
-def test_another_seed_is_another_world() -> None:
+def test_other_seeds_give_other_places() -> None:
     worlds = [start_poses(10, seed, 1.0, RADIUS, CLEARANCE, WALL_CLEARANCE) for seed in (1, 2)]
     assert not (worlds[0][0] == worlds[1][0]).any()
     assert not (worlds[0][1] == worlds[1][1]).any()
@@ -58,7 +58,7 @@ def test_robots_without_room_are_refused() -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_crowd_that_finds_no_room_at_random_is_parted(seed: int) -> None:
+def test_a_crowd_without_free_places_is_parted(seed: int) -> None:
     positions, _ = start_poses(80, seed, 1.0, RADIUS, CLEARANCE, WALL_CLEARANCE)
     assert pdist(positions).min() >= 2 * RADIUS + CLEARANCE
     assert np.abs(positions).max() <= 1.0 - RADIUS - WALL_CLEARANCE + 1e-12

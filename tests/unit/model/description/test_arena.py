@@ -88,7 +88,7 @@ def test_random_stations_depend_on_the_seed() -> None:
     assert not (other == again).any()
 
 
-def test_random_stations_come_everywhere() -> None:
+def test_random_stations_are_uniform() -> None:
     stations = np.concatenate([build("random-stations", seed=seed).stations for seed in range(300)])
     assert np.abs(stations).max() <= 1 - STATION_RADIUS
     # In each quadrant a quarter of them, within four standard deviations.
@@ -110,7 +110,7 @@ def test_random_stations_come_everywhere() -> None:
         (("random-stations", 2, 2.0, 1.50, 0.17), "station_radius", "must leave room for two stations"),
     ],
 )
-def test_what_does_not_fit_is_refused(
+def test_an_arena_whose_places_do_not_fit_is_refused(
     arguments: tuple[str, int, float, float, float], field: str, allowed: str
 ) -> None:
     with pytest.raises(InputError) as refusal:

@@ -249,7 +249,7 @@ def test_apportioned_sizes_are_the_proportions_rounded(n: int, shares: list[int]
 # Absent robots.
 
 
-def test_the_absent_are_named_in_any_order() -> None:
+def test_absent_robots_may_be_given_in_any_order() -> None:
     assert game(absent=(7, 3)) == game(absent=[3, 7])
     assert game(absent=(3, 7)).absent == (3, 7)
     assert game(absent=(3, 7)).size == 20

@@ -81,7 +81,7 @@ def test_the_standard_actions_have_the_parameters_durations() -> None:
         ("argos, wall_escape=clear, leg_mean=1e1", ARGOS.replace(wall_escape="clear", leg_mean=10.0)),
     ],
 )
-def test_parameters_are_read_from_text(text: str, parameters: Parameters) -> None:
+def test_parameters_are_parsed_from_text(text: str, parameters: Parameters) -> None:
     assert parse_parameters(text) == parameters
 
 
@@ -104,7 +104,7 @@ def test_parameters_are_read_from_text(text: str, parameters: Parameters) -> Non
         ("fitted, wall_escape=up", "wall_escape='up': must be 'clear' or 'away'"),
     ],
 )
-def test_what_cannot_be_read_is_refused(text: str, message: str) -> None:
+def test_an_invalid_text_is_refused(text: str, message: str) -> None:
     with pytest.raises(InputError) as refusal:
         parse_parameters(text)
     assert str(refusal.value).startswith(message)
@@ -123,7 +123,7 @@ def test_a_number_out_of_range_is_refused(name: str, value: object) -> None:
 
 
 @pytest.mark.parametrize("name", NUMBERS)
-def test_zero_is_refused_where_it_makes_no_sense(name: str) -> None:
+def test_zero_is_refused_if_it_is_out_of_range(name: str) -> None:
     if name in MAY_BE_ZERO:
         assert getattr(Parameters(**{name: 0.0}), name) == 0.0
     else:

@@ -150,13 +150,13 @@ LEARNERS = [
 ]
 
 
-def test_every_figure_of_both_chapters_is_there_and_no_other() -> None:
+def test_the_catalogue_has_exactly_the_figures_of_both_chapters() -> None:
     assert list(CATALOGUE) == list(CURVES)
     assert len([name for name in CATALOGUE if name.startswith("fig-")]) == 48
     assert all(name == scenario.id for name, scenario in CATALOGUE.items())
 
 
-def test_titles_tell_scenarios_and_tables_apart() -> None:
+def test_titles_are_unique() -> None:
     titles = {entry.title for entry in (*CATALOGUE.values(), *TABLES.values())}
     assert len(titles) == len(CATALOGUE) + len(TABLES)
 
@@ -212,7 +212,7 @@ def test_learners_have_the_opponents_reward_and_rule_of_the_source(
     assert others <= {"flight"}
 
 
-def test_nothing_that_is_said_of_a_learner_is_about_a_curve_that_is_not_there() -> None:
+def test_expected_learners_belong_to_existing_curves() -> None:
     missing = LEARNED.keys() - {(name, condition) for name, condition, _ in LEARNERS}
     assert missing == {("fig-7.4", "delta=0.02")}
 
@@ -240,7 +240,7 @@ def test_the_protocol_is_that_of_the_source(scenario: Scenario) -> None:
 
 
 @pytest.mark.parametrize("name", ["fig-7.10", "fig-7.11"])
-def test_the_halves_of_a_mixed_swarm_take_every_even_number(name: str) -> None:
+def test_the_halves_of_a_mixed_swarm_allow_every_even_number(name: str) -> None:
     for condition in CATALOGUE[name].conditions:
         for n in range(4, 60, 2):
             first, second, third = (swarm.size for swarm in condition.game(n).swarms)
@@ -248,7 +248,7 @@ def test_the_halves_of_a_mixed_swarm_take_every_even_number(name: str) -> None:
             assert first - third in {0, 1}
 
 
-def test_the_single_swarm_has_a_curve_of_each_action_and_one_that_learns_of_the_four() -> None:
+def test_the_single_swarm_has_a_curve_per_action_and_one_that_learns() -> None:
     curves = CATALOGUE["fig-6.15"].conditions
     for curve in curves:
         assert {action.name: (action.direction, action.duration) for action in curve.actions} == ACTIONS
@@ -256,7 +256,7 @@ def test_the_single_swarm_has_a_curve_of_each_action_and_one_that_learns_of_the_
     assert [rule.policy for curve in curves[:-1] for rule in curve.swarms] == list(ACTIONS)
 
 
-def test_a_default_that_is_written_out_leaves_no_trace() -> None:
+def test_explicit_defaults_are_left_out_of_the_text() -> None:
     plain = learner(reward=reward_of("wlu", delta=0.125, b=1.0), rule=rule_of("ucb", gamma=UCB().gamma))
     assert plain.policy == "inter-learner"
     assert reward_of(delta={1: 0.125, 3: 0.125}) == "wlu"
@@ -268,7 +268,7 @@ def test_a_default_that_is_written_out_leaves_no_trace() -> None:
     assert (defaults["reward"].default, defaults["rule"].default) == ("wlu", "ucb")
 
 
-def test_a_learner_is_never_given_what_it_does_not_know() -> None:
+def test_unknown_arguments_of_a_learner_are_refused() -> None:
     with pytest.raises(KeyError):
         reward_of("wlu", detla=0.1)
     with pytest.raises(KeyError):

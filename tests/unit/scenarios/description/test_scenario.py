@@ -63,7 +63,7 @@ def test_a_number_that_does_not_suit_the_shares_is_refused(condition: Condition,
 
 
 @given(st.lists(st.integers(1, 9), min_size=1, max_size=5), st.integers(1, 10))
-def test_without_an_exception_the_proportions_hold_exactly(shares: list[int], times: int) -> None:
+def test_without_multiple_of_the_proportions_hold_exactly(shares: list[int], times: int) -> None:
     step = sum(shares) // math.gcd(*shares)
     sizes = with_shares(*shares).sizes(times * step)
     assert [size * sum(shares) for size in sizes] == [share * times * step for share in shares]
@@ -115,7 +115,7 @@ def test_a_game_has_everything_its_condition_says() -> None:
         ({"colour": "red"}, "colour"),
     ],
 )
-def test_a_scenario_that_makes_no_sense_is_refused(changes: dict[str, object], field: str) -> None:
+def test_an_invalid_scenario_is_refused(changes: dict[str, object], field: str) -> None:
     good = {"id": "fig-0", "title": "A test", "conditions": (with_shares(1, 1),)}
     Scenario(**good)
     with pytest.raises(InputError) as refusal:
@@ -144,7 +144,7 @@ def test_a_scenario_that_makes_no_sense_is_refused(changes: dict[str, object], f
         {"actions": (Action(name="push", direction=1, duration=1.0),)},  # avoid needs a flight
     ],
 )
-def test_a_world_that_cannot_be_is_refused_with_the_scenario(world: dict[str, object]) -> None:
+def test_a_condition_without_a_valid_game_is_refused(world: dict[str, object]) -> None:
     with pytest.raises(InputError):
         Scenario(id="fig-0", title="A test", conditions=(Condition(**({"swarms": (AVOID, AVOID)} | world)),))
 
@@ -170,7 +170,7 @@ def test_a_world_that_cannot_be_is_refused_with_the_scenario(world: dict[str, ob
         ("avoid(speed=3)", "policy.speed=3: no such field; there are none"),
     ],
 )
-def test_a_policy_that_cannot_be_is_refused_in_a_line_that_says_why(policy: str, complaint: str) -> None:
+def test_an_invalid_policy_is_refused_with_a_reason(policy: str, complaint: str) -> None:
     text = f"""
         id = "my-1"
         title = "Mine"
@@ -207,7 +207,7 @@ def test_a_scenario_finds_its_games_by_the_name_of_the_curve() -> None:
         scenario.game("", 6)
 
 
-def test_a_scenario_knows_which_numbers_it_allows() -> None:
+def test_the_numbers_of_robots_that_a_scenario_allows() -> None:
     assert [n for n in range(1, 40) if CATALOGUE["fig-7.12"].allows(n)] == [13, 26, 39]
 
 

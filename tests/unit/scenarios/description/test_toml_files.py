@@ -22,7 +22,7 @@ swarms = [{policy = "avoid", share = 2}, {policy = "aggressive"}]
 """
 
 
-def test_what_show_prints_is_read_again(tmp_path: Path) -> None:
+def test_written_scenarios_can_be_read(tmp_path: Path) -> None:
     file = tmp_path / "shown.toml"
     for scenario in CATALOGUE.values():
         file.write_text(scenario.to_toml())
@@ -32,7 +32,7 @@ def test_what_show_prints_is_read_again(tmp_path: Path) -> None:
     assert read_scenarios(file) == several
 
 
-def test_a_file_says_no_more_than_what_differs_from_the_defaults(tmp_path: Path) -> None:
+def test_fields_at_their_defaults_may_be_left_out(tmp_path: Path) -> None:
     (tmp_path / "hunt.toml").write_text(HUNT)
     (hunt,) = select_scenarios([str(tmp_path / "hunt.toml")])
     assert [rule.policy for rule in hunt.conditions[0].swarms] == ["avoid", "aggressive"]
@@ -58,8 +58,8 @@ def test_a_file_says_no_more_than_what_differs_from_the_defaults(tmp_path: Path)
         ("duration = 60", "self = 1", "hunt.toml: conditions.0.self=1: no such field; there are layout, "),
         ("share = 2", "self = 1", "hunt.toml: conditions.0.swarms.0.self=1: no such field; there are pol"),
         ('title = "Two avoid one"', "", "hunt.toml: title=None: is required"),
-        ('id = "hunt"', "scenarios = []\nid = 'hunt'", "hunt.toml: scenarios=[]: must be some, and all"),
-        (HUNT, "scenarios = []", "hunt.toml: scenarios=[]: must be some, and all"),
+        ('id = "hunt"', "scenarios = []\nid = 'hunt'", "hunt.toml: scenarios=[]: must not be empty, and"),
+        (HUNT, "scenarios = []", "hunt.toml: scenarios=[]: must not be empty, and"),
         (HUNT, "scenarios = [3]", "hunt.toml: scenarios.0=3: must be a table"),
         (HUNT, "[[scenarios]]\nid = 3", "hunt.toml: scenarios.0: id=3: must be a valid string"),
         ('"hunt"', f'"{"a" * 101}"', "hunt.toml: id='aaa"),
@@ -71,7 +71,7 @@ def test_a_file_says_no_more_than_what_differs_from_the_defaults(tmp_path: Path)
         (HUNT, "", "hunt.toml: id=None: is required"),
     ],
 )
-def test_a_mistake_in_a_file_is_told_with_its_place(
+def test_an_error_names_the_file_and_the_field(
     before: str, after: str, message: str, tmp_path: Path
 ) -> None:
     file = tmp_path / "hunt.toml"
@@ -83,20 +83,20 @@ def test_a_mistake_in_a_file_is_told_with_its_place(
     assert "\n" not in str(refusal.value)
 
 
-def test_bytes_that_are_no_text_are_refused(tmp_path: Path) -> None:
+def test_a_file_that_is_not_text_is_refused(tmp_path: Path) -> None:
     (tmp_path / "noise.toml").write_bytes(b"\xff\xfe\x00")
     for path in (tmp_path / "noise.toml", tmp_path / "absent.toml", tmp_path):
         with pytest.raises(InputError, match="must be a file of TOML"):
             read_scenarios(path)
 
 
-def test_the_mark_that_some_editors_put_first_is_no_mistake(tmp_path: Path) -> None:
+def test_a_byte_order_mark_is_accepted(tmp_path: Path) -> None:
     file = tmp_path / "hunt.toml"
     file.write_text(HUNT, encoding="utf-8-sig")
     assert read_scenarios(file)[0].id == "hunt"
 
 
-def test_two_scenarios_of_one_id_must_be_the_same(tmp_path: Path) -> None:
+def test_scenarios_with_the_same_id_must_be_equal(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     file.write_text(CATALOGUE["fig-6.1c"].to_toml())
     first, second = select_scenarios(["fig-6.1c", str(file), "fig-6.1a"])
