@@ -70,7 +70,7 @@ def read_results(
 def read_runs(directory: Path) -> pd.DataFrame:
     """Read `runs.parquet`: one row for each run and swarm, at least one.
 
-    The columns are those of the schema (docs/running.md) and further columns of the file; see `read_table`.
+    Its columns are those of `kswarms.agents.common.columns` and further columns of the file.
     """
     return _read_outcomes(directory, "runs")
 
