@@ -24,7 +24,7 @@ def test_a_test_of_three_lines_asserts_a_finding(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    command = re.search(r"`kswarms (run .*? --out results/fighters)`", PAGE.read_text(encoding="utf-8"))
+    command = re.search(r"^kswarms (run .* --out results/fighters)$", PAGE.read_text(encoding="utf-8"), re.M)
     assert command
     assert invoke([*command[1].split(), "--no-figures", "--jobs", "1"]) == 0
     names: dict[str, Any] = {}
