@@ -59,7 +59,7 @@ def film(
         check_film(out)
         step = speed / fps
         fits = (end - begin) / step < _MOST_FRAMES
-        _check("speed", speed, fits, f"must be so high that there are at most {_MOST_FRAMES:,} pictures")
+        _check("speed", speed, fits, f"must be so high that the film has at most {_MOST_FRAMES:,} frames")
         instants = [begin + k * step for k in range(int((end - begin) / step + 1e-9) + 1)]
     else:
         _check("out", str(out), out.suffix == ".png", "must end with .png for a contact sheet")

@@ -64,12 +64,12 @@ def replay(
     for row in (*outcome.swarms, *outcome.policies):
         typer.echo("  " + ", ".join(f"{name}={value!r}" for name, value in row.items()))
     if kept is None:
-        typer.echo(f"{directory} has no results of it")
+        typer.echo(f"{directory} has no results of this run")
         return 0
     if kept == (outcome.swarms, outcome.policies):
-        typer.echo(f"the same as in {directory}")
+        typer.echo(f"equal to the results in {directory}")
         return 0
-    typer.echo(f"kswarms: {directory} has other results of it: they were played by other code", err=True)
+    typer.echo(f"kswarms: {directory} has different results of this run, played by other code", err=True)
     return 1
 
 

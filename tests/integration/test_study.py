@@ -106,7 +106,7 @@ def test_status_shows_failed_runs_and_the_commands_that_replay_them(
     assert read_sessions("my results")[-1]["runs"] == {"asked for": 8, "done before": 6}
     capsys.readouterr()
     assert invoke(replay) == 0
-    assert capsys.readouterr().out.splitlines()[-1] == "the same as in my results"
+    assert capsys.readouterr().out.splitlines()[-1] == "equal to the results in my results"
     assert pq.read_table("my results/runs.parquet").num_rows == 2 * 8
 
 
@@ -127,7 +127,7 @@ def test_replay_reports_results_that_differ_or_are_missing(
     with Study(Path("results")) as study:
         (missing,) = study.plan([TINY.replace(densities=(8,), seeds=1, conditions=TINY.conditions[:1])])
     assert invoke(["replay", "results", missing.digest]) == 0
-    assert capsys.readouterr().out.splitlines()[-1] == "results has no results of it"
+    assert capsys.readouterr().out.splitlines()[-1] == "results has no results of this run"
     assert invoke(["replay", "results", "0" * 16]) == 2
     assert capsys.readouterr().err.startswith(f"kswarms: run='{'0' * 16}': must be a run of results: see ")
 
