@@ -134,8 +134,11 @@ def test_the_imports_shown_on_a_page_work(page: Path) -> None:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_the_code_that_a_page_links_to_exists(page: Path) -> None:
-    for name in re.findall(r"\(reference/\w+\.md#(kswarms\.[\w.]+)\)", page.read_text(encoding="utf-8")):
+def test_the_code_that_a_page_names_exists(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    linked = re.findall(r"\(reference/\w+\.md#(kswarms\.[\w.]+)\)", text)
+    quoted = re.findall(r"`(kswarms\.\w+\.[\w.]+)", BLOCK.sub("", text))
+    for name in [*linked, *quoted]:
         assert resolve_name(name) is not None
 
 
