@@ -22,7 +22,7 @@ from kswarms.model.recorder import Recorder, Table, parse_record, policy_rows, r
 
 
 class GameModel(GameState):
-    """A game that can be played. All attributes of its state are those of `GameState`.
+    """A game that can be played; `GameState` documents its state.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""State of a game: clock, robots and scores. `GameModel` extends it by what happens."""
+"""State of a game: clock, robots and scores. `GameModel` extends it by the events."""
 
 import math
 from collections.abc import Mapping

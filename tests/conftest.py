@@ -1,4 +1,4 @@
-"""What tests of games share: a profile of hypothesis, games set up by hand, models that do not pile up."""
+"""Shared by all tests: a hypothesis profile, games with given poses, release of models."""
 
 import math
 from collections.abc import Callable, Iterator, Sequence
@@ -17,7 +17,7 @@ from kswarms.model.game_model import GameModel
 settings.register_profile("kswarms", deadline=None)
 settings.load_profile("kswarms")
 
-# What fails in a helper beside the tests shows its values, as it does in a test.
+# Assertions in helper modules show their values, as in tests.
 pytest.register_assert_rewrite("tests.helpers", "tests.reference", "tests.baseline")
 
 Pose = tuple[float, float, float]
@@ -26,14 +26,14 @@ Scene = Callable[..., GameModel]
 
 @pytest.fixture(autouse=True)
 def _forget_models() -> Iterator[None]:
-    """Drop what Mesa keeps of every model in a table of its class."""
+    """Clear Mesa's class-level registry of models."""
     yield
     mesa.Agent._ids.clear()
 
 
 @pytest.fixture
 def scene() -> Scene:
-    """Return a builder of games in which every robot stands where the test puts it."""
+    """Return a builder of games with given poses of all robots."""
 
     def build(
         *swarms: Sequence[Pose],

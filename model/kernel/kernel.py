@@ -12,16 +12,7 @@ from kswarms.agents.robot.state import RobotStates
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game
 from kswarms.model.kernel.advance import advance
-from kswarms.model.kernel.arrays import (
-    CONTACT,
-    EVENT,
-    MAX_CONTACTS,
-    PAIR,
-    SCALARS,
-    STATION,
-    WORK,
-    Memory,
-)
+from kswarms.model.kernel.arrays import CONTACT, EVENT, MAX_CONTACTS, PAIR, SCALARS, STATION, WORK, Memory
 from kswarms.model.kernel.neighbours import room_for_pairs
 
 _MOST_CELLS: Final = 1024

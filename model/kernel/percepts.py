@@ -10,16 +10,7 @@ from kswarms.agents.common.arrays import Floats
 from kswarms.agents.common.jit import compiled
 from kswarms.agents.robot.sensing import sense, walls_met, wrap
 from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, HOMING_ERROR, LEG, LEG_OVER, TURN
-from kswarms.model.kernel.arrays import (
-    CONFLICT,
-    DEPOSIT,
-    HOMING,
-    LEG_DUE,
-    PICK_UP,
-    TURN_DUE,
-    WALL,
-    Memory,
-)
+from kswarms.model.kernel.arrays import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE, WALL, Memory
 from kswarms.model.kernel.neighbours import within
 
 

@@ -1,7 +1,7 @@
-"""Digests of what games of many kinds come to, to show that a change of the code leaves every game as it was.
+"""Digests of the results of many games, to show that a change of the code does not change them.
 
-Run as a script, this module plays all games and writes ``digests.json`` beside it. Do so only when results
-are meant to change, and say so in the change log.
+Run as a script, this module plays all games and writes ``digests.json`` beside it. Do so only if results
+should change, and note it in the change log.
 """
 
 import hashlib
@@ -49,7 +49,7 @@ def catalogue_games() -> Iterator[tuple[str, Game, int]]:
 
 
 def other_games(directory: Path) -> Iterator[tuple[str, Game, int]]:
-    """Yield games with what the catalogue does not have; learned policies are saved into `directory`."""
+    """Yield games with features that the catalogue lacks; learned policies are saved into `directory`."""
 
     def game(*swarms: tuple[Any, ...], parameters: str = "fitted", **rest: Any) -> Game:
         fields = ("policy", "size", "drive", "drive_action")

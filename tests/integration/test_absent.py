@@ -1,4 +1,4 @@
-"""Games that some robots are absent from: all else is the same game (docs/contribution.md)."""
+"""Games with absent robots are otherwise the same games (docs/contribution.md)."""
 
 import json
 import math
@@ -18,9 +18,9 @@ from kswarms.model.game_model import GameModel
 
 FITTED = PRESETS["fitted"]
 NEAR = 2 * KREMBOT.radius + KREMBOT.sensing_scale * max(FITTED.flight_range, FITTED.active_range)
-"""What is farther than this from a robot, centre to centre, neither touches nor concerns it (m)."""
+"""Robots farther apart than this, centre to centre, do not affect each other (m)."""
 RESERVE = 0.05
-"""More than two robots close in by in a period (m)."""
+"""Upper bound of the approach of two robots in a period (m)."""
 WAYS = ("learning", "game")
 
 
@@ -43,7 +43,7 @@ def at_the_switch(what: Game, seed: int = 0, record: str = "conflicts") -> GameM
 
 
 def world(model: GameModel, absent: tuple[int, ...] = ()) -> list[Any]:
-    """Return body, task and policy of every robot but some, and what is left at the stations."""
+    """Return body, state and policy of all but some robots, and the supplies."""
     robots = [robot for robot in model.robots if robot.number not in absent]
     return [
         [

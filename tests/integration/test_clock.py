@@ -1,4 +1,4 @@
-"""SimPy moves the clock: what is an event, how long it takes, in which order they come (section 2.6)."""
+"""Events on SimPy's clock: their kinds, durations and order (section 2.6)."""
 
 import math
 from collections import Counter, defaultdict
@@ -21,7 +21,7 @@ SEED = 3
 
 
 class Happened(NamedTuple):
-    """One event of the clock; for a timeout also whom it wakes, from what, and when that began."""
+    """One event of the clock; for a timeout also its robot, kind and start."""
 
     time: int
     priority: int
@@ -32,7 +32,7 @@ class Happened(NamedTuple):
 
 
 class Trace:
-    """What a game did, event by event, and what its robots decided, counted apart from the events."""
+    """Trace of the events of a game, and independent counts of the decisions of its robots."""
 
     def __init__(self, game: Game, monkeypatch: pytest.MonkeyPatch, record: str = "conflicts") -> None:
         self.events: list[Happened] = []
@@ -44,7 +44,7 @@ class Trace:
         monkeypatch.setattr(self.model.env, "step", self.step)
 
     def _count(self, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
-        """Count what a robot sets out to do in a decision: a leg, or a turn if its wheels then turn."""
+        """Count the decision of a robot: a leg, or a turn if it then turns."""
         decide = getattr(Krembot, name)
 
         def counted(robot: Krembot, *arguments: Any) -> None:
@@ -70,7 +70,7 @@ class Trace:
         return Happened(*head, callback.__self__.index, str(event.value), int(time) - int(event._delay))  # type: ignore[attr-defined]
 
     def timeouts(self) -> list[Happened]:
-        """Return all timeouts that were begun, also those that the game did not wait for."""
+        """Return all timeouts, including those pending at the end of the game."""
         pending = [self.read(place) for place in range(len(self.model.env._queue))]
         return [event for event in self.events + pending if event.what]
 

@@ -1,4 +1,4 @@
-"""The same seed gives the same bytes, anywhere and in any order; what only looks on changes nothing."""
+"""The same seed gives the same bytes in any process and order, with and without recording."""
 
 import hashlib
 import pickle

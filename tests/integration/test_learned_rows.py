@@ -1,4 +1,4 @@
-"""What the rows of learned policies say about the robots."""
+"""Rows of learned policies."""
 
 import math
 from typing import Any

@@ -1,4 +1,4 @@
-"""First learning, then the measured game, in one world (specification, section 3.1)."""
+"""The learning phase and the measured game share one world (specification, section 3.1)."""
 
 import json
 import math
@@ -41,7 +41,7 @@ def play(what: Game, seed: int = 0, record: str = "conflicts,robots") -> GameMod
 
 
 def at_the_switch(what: Game, seed: int = 0, record: str = "conflicts,robots") -> GameModel:
-    """Play the learning alone; the measured game has begun, but no robot has decided or moved in it."""
+    """Play the learning phase only; no robot has decided or moved in the measured game."""
     model = GameModel(what.replace(sample_period=what.learning), seed, record=record)
     model.step()
     assert (model.env.now, model.phase) == (SWITCH, "game")
@@ -49,7 +49,7 @@ def at_the_switch(what: Game, seed: int = 0, record: str = "conflicts,robots") -
 
 
 def world(model: GameModel) -> bytes:
-    """Return all that the world is made of: bodies, what they do, pucks they carry, supplies."""
+    """Return the state of the world: bodies, actions, carried pucks, supplies."""
     positions = model.space.agent_positions.tobytes()
     return positions + model.states.robots.tobytes() + json.dumps(model.supply).encode()
 
@@ -61,7 +61,7 @@ def rows_of(model: GameModel, phase: str) -> list[Row]:
 
 
 def events(model: GameModel) -> Iterator[None]:
-    """Have the clock process one event after the other, to the end of the game."""
+    """Process one event of the clock per step, to the end of the game."""
     with suppress(StopSimulation):
         while True:
             model.env.step()
@@ -74,7 +74,7 @@ def events(model: GameModel) -> Iterator[None]:
 @pytest.mark.parametrize("policies", ["avoid,attack", "aggressive,mixed"])
 @pytest.mark.parametrize("preempt", [False, True])
 def test_the_switch_changes_nothing_in_the_world(policies: str, preempt: bool) -> None:
-    """Two phases are the same world as one game of both their lengths, where nobody learns."""
+    """Without learners, two phases equal one game of their total length."""
     rest = {"supply": 9, "parameters": PRESETS["fitted"].replace(preempt=preempt)}
     phased = at_the_switch(game(*policies.split(","), **rest))
     rest |= {"duration": LEARNING + MEASURED, "sample_period": LEARNING}
@@ -149,7 +149,7 @@ def test_a_running_action_is_split_at_the_switch() -> None:
     acting = [robot for robot in model.robots if robot.state == "A"]
     assert acting
     model.env.run(until=SWITCH + 1)
-    # In its first period the action goes on unless it was over: nobody has begun one since.
+    # In its first period a running action continues, since no robot has begun another.
     going_on = [robot for robot in acting if sum(robot.conflicts) == 0 and robot.state == "A"]
     assert going_on
     for robot in going_on:
@@ -203,14 +203,14 @@ def test_the_conflict_open_at_the_switch_gets_no_reward(seed: int) -> None:
         assert math.isnan(row["reward"]) == math.isnan(row["q"]) == is_open
         ends = row["start"] + row["t_a"] + row["t_p"]
         assert ends == pytest.approx(LEARNING) if is_open else ends < LEARNING - 0.05
-    # And nobody's bandit counts it.
+    # No bandit counts it.
     for robot in model.members[1]:
         rewarded = sum(row["robot"] == robot.index for row in learned) - 1
         assert sum(arm["count"] for arm in snapshot_of(robot.policy)) == rewarded
 
 
 def test_the_first_conflict_of_the_measured_game_rewards_nothing() -> None:
-    """It closes nothing: what was open at the switch is over and done with."""
+    """The conflict that was open at the switch is already closed."""
     model = play(game("attack", "learner"))
     for robot in model.members[1]:
         rows = [row for phase in ("learning", "game") for row in rows_of(model, phase)]

@@ -56,8 +56,8 @@ def test_the_scores_agree(comparison: pd.DataFrame) -> None:
 @pytest.mark.parametrize(
     ("scenario", "change", "n", "verdict"),
     [
-        ("argos-attack-attack", "push_share=0.5", 46, "score_fits"),  # who shoves gets through
-        ("argos-avoid-avoid", "conflict_distance=0.05", 26, "share_fits"),  # who sees less fights less
+        ("argos-attack-attack", "push_share=0.5", 46, "score_fits"),  # shoving robots get through
+        ("argos-avoid-avoid", "conflict_distance=0.05", 26, "share_fits"),  # robots that see less fight less
     ],
 )
 def test_other_parameters_do_not_agree(scenario: str, change: str, n: int, verdict: str) -> None:

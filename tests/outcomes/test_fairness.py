@@ -147,7 +147,7 @@ class Exchange:
 
 
 class Exchanged:
-    """A stream whose draws are those of the twin, seen in the mirror."""
+    """A stream with the mirrored draws of the twin."""
 
     def __init__(self, exchange: Exchange, draws: Generator, purpose: Purpose) -> None:
         self._exchange, self._draws, self._purpose = exchange, draws, purpose
@@ -167,7 +167,7 @@ class Exchanged:
 
 
 def exchange_draws(model: GameModel, exchange: Exchange, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let all robots that draw from now on draw what their twins would."""
+    """Give all robots the draws of their twins from now on."""
     n = model.game.size
     monkeypatch.setattr(
         "kswarms.agents.streams.stream",
@@ -223,7 +223,7 @@ def play_exchanged(game: Game, seed: int, exchange: Exchange) -> float:
         game = game.replace(swarms=game.swarms[::-1])
     image = GameModel(game, seed)
     put_twins(image, model, exchange)
-    image_of = np.append(np.argsort(twins), -1)  # nobody stays nobody
+    image_of = np.append(np.argsort(twins), -1)  # −1, no opponent, stays −1
     path = []
     while not model.ended:
         model.step()

@@ -14,7 +14,7 @@ from kswarms.analysis.results.runs import Results
 from kswarms.analysis.tables.learned import learned
 
 LEARNING: Final = (("fig-6.4a", "fig-6.4b"), ("fig-6.6", "fig-6.7", "fig-6.8"))
-"""Scenarios of learners that learn about others alone, and of those that learn about their own swarm."""
+"""Scenarios of learners that learn about other swarms, and of learners about their own swarm."""
 DENSITIES: Final = (6, 10, 16, 20, 26, 30, 36, 40, 46, 50)
 FIRST_SEED: Final = 1000
 """Nothing is fitted to the seeds from here on."""

@@ -1,4 +1,4 @@
-"""Bodies in contact obey section 2.5: whatever the state, and in cases whose outcome is known on paper."""
+"""Bodies in contact obey section 2.5, in generated states and in cases with a known outcome."""
 
 import math
 
@@ -24,7 +24,7 @@ frictions = st.sampled_from((0.0, 0.18, 0.45, 1.5))
 
 
 def drive(scene: Scene, periods: int = 1) -> Floats:
-    """Move the robots of a scene, none of which decides anything; return by how much each was displaced."""
+    """Move the robots of a scene without decisions; return their displacements (m)."""
     before = scene.states.positions.copy()
     advance, tick = scene.kernel().advance, 0
     while tick < periods:
@@ -111,7 +111,7 @@ def test_a_contact_removes_the_normal_motion_and_friction(
     expected = (STRIDE * math.cos(turn) - blocked) * normal
     expected += math.copysign(along, turn) * np.array((-normal[1], normal[0]))
     np.testing.assert_allclose(moved[0], expected, rtol=0, atol=EXACT)
-    assert not moved[1].any()  # who stands is not moved
+    assert not moved[1].any()  # a standing robot is not moved
 
 
 @settings(deadline=None, max_examples=50)

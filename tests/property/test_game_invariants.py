@@ -1,4 +1,4 @@
-"""What holds in every game, whoever plays it: bodies, times, pucks, ends (specification, chapter 2)."""
+"""Invariants of every game: bodies, times, pucks, ends (specification, chapter 2)."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -24,7 +24,7 @@ POLICIES = ("avoid", "attack", "aggressive", "mixed", "flight", "fight", "aggres
 
 @st.composite
 def parameters(draw: st.DrawFn, period: float) -> dict[str, Any]:
-    """Draw what differs from the fitted parameters; some stations are big, so that short games have pucks."""
+    """Draw changes of the fitted parameters; some stations are large, so that short games have pucks."""
     return {
         "period": period,
         "preempt": draw(st.booleans()),
@@ -77,7 +77,7 @@ def every_period(model: GameModel) -> Iterator[None]:
 
 
 def check_bodies(model: GameModel, before: np.ndarray[Any, Any]) -> None:
-    """Check that nobody overlaps, is outside, or was moved much farther than robots drive."""
+    """Check that no robot overlaps, is outside, or moved much farther than robots drive."""
     positions, body = model.states.positions, model.game.body
     if len(positions) > 1:
         assert pdist(positions).min() > 2 * body.radius - 1e-4
@@ -90,7 +90,7 @@ def check_bodies(model: GameModel, before: np.ndarray[Any, Any]) -> None:
 
 
 def check_books(model: GameModel) -> None:
-    """Check that times add up to the time played, pucks to those picked up."""
+    """Check that times add up to the time played, and pucks to the pucks picked up."""
     now = model.env.now
     for robot in model.robots:
         t_a, t_p = robot.times()

@@ -1,4 +1,4 @@
-"""The compiled kernel does what the plain reference does: on generated states, and through whole games."""
+"""The compiled kernel equals the plain reference, in generated states and in whole games."""
 
 from typing import Any
 
@@ -27,7 +27,7 @@ def test_a_period_equals_the_reference(scene: Scene) -> None:
     advance = compared(kernel, ReferenceKernel(scene.game, scene.arena), scene.states, [])
     for tick in range(3):
         while advance(tick, tick + 1)[1]:
-            pass  # nobody decides: the next stage of the same period follows
+            pass  # without decisions, the next stage of the same period follows
 
 
 def test_percepts_follow_pick_ups_even_when_time_stands_still() -> None:
@@ -83,7 +83,7 @@ def test_long_calls_use_current_neighbours() -> None:
     assert max(calls) * 0.015 > 10 * game.body.radius
 
 
-# ------------------------------------------------------------------------------ what the comparison must find
+# ------------------------------------------------------------------------- the comparison detects differences
 
 
 def test_a_stale_neighbour_list_is_detected() -> None:

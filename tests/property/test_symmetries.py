@@ -26,7 +26,7 @@ STRIDE = 0.015
 
 
 def assert_permuted(scene: Scene, image: Scene, order: Integers) -> None:
-    """Check that robot k of the image does what robot ``order[k]`` of the scene does."""
+    """Check that robot k of the image behaves as robot ``order[k]`` of the scene."""
     told, image_told = play_period(scene), play_period(image)
     assert {(order[robot], kind) for robot, kind in image_told} == set(told)
     for (robot, kind), (other, *rest) in image_told.items():

@@ -1,4 +1,4 @@
-"""Time as utility, and what robots estimate of it, against their definitions (sections 1.3, 1.4)."""
+"""Time utilities and their estimates, against their definitions (sections 1.3, 1.4)."""
 
 import pytest
 from hypothesis import given

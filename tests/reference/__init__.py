@@ -1,1 +1,1 @@
-"""A second kernel in plain numpy, and generated states: what the compiled one is compared with."""
+"""A reference kernel in plain numpy, and generated states to compare the compiled kernel with it."""

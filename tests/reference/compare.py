@@ -1,4 +1,4 @@
-"""Compares what the compiled kernel did with what the reference did."""
+"""Comparison of the compiled kernel with the reference."""
 
 import math
 from collections.abc import Callable
@@ -12,11 +12,11 @@ from kswarms.model.kernel.kernel import Kernel
 from tests.reference.kernel import Event, ReferenceKernel, State
 
 PRECISION = 1e-9
-"""Metres and radians by which the two may differ: the last bits, and what a jam makes of them."""
+"""Tolerance (m, rad): a jam amplifies differences in the last bits."""
 
 
 def assert_same_events(found: Records, expected: list[Event]) -> None:
-    """Compare events: same order, same kinds, and what each kind tells."""
+    """Compare events: order, kinds, and the fields that a kind uses."""
     assert [(event["robot"], event["kind"]) for event in found] == [event[:2] for event in expected]
     for event, reference in zip(found, expected, strict=True):
         if reference.kind == PICK_UP:
@@ -47,7 +47,7 @@ def assert_same_state(states: RobotStates, expected: State) -> None:
 def compared(
     kernel: Kernel, reference: ReferenceKernel, states: RobotStates, calls: list[int]
 ) -> Callable[[int, int], tuple[int, int]]:
-    """Return the kernel's `advance`, which now has the reference do the same and compares.
+    """Return the kernel's `advance` with a comparison of each call to the reference.
 
     Each call starts the reference from the kernel's state and adds the number of its periods to `calls`.
     """

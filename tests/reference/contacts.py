@@ -49,7 +49,7 @@ def offsets(positions: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 def translate(positions: Floats, wanted: Floats, ground: Ground) -> None:
-    """Move all bodies by what they want, as far as contacts let them; writes `positions`, shape (n, 2)."""
+    """Move all bodies by their displacements, subject to contacts; writes `positions`, shape (n, 2)."""
     contacts, shoves = meet_bodies(positions, wanted, ground)
     for robot, found in enumerate(contacts):
         found += meet_walls(positions[robot], wanted[robot], ground)
@@ -87,7 +87,7 @@ def meet_walls(place: Floats, want: Floats, ground: Ground) -> list[Contact]:
 
 
 def slide(want: Floats, contacts: list[Contact], friction: float) -> Floats:
-    """Return what is left of a wanted displacement: normal parts lost, tangential ones braked."""
+    """Return a displacement without its blocked normal parts and the friction of its tangential parts."""
     move = want.copy()
     for contact in sorted(contacts, key=lambda contact: -contact.blocked):
         towards = move @ contact.normal

@@ -26,7 +26,7 @@ EQUALLY_NEAR = 1e-12
 
 
 class Event(NamedTuple):
-    """What a robot must decide on; fields that its kind does not use are 0."""
+    """A decision that a robot must take; fields that its kind does not use are 0."""
 
     robot: int
     kind: int
@@ -39,7 +39,7 @@ class Event(NamedTuple):
 
 @dataclass
 class State:
-    """What the kernel knows of the robots: arrays of length n, or (n, 2)."""
+    """State of the robots: arrays of length n, or (n, 2)."""
 
     positions: Floats
     heading: Floats
@@ -52,13 +52,13 @@ class State:
 
     @classmethod
     def of(cls, states: RobotStates) -> Self:
-        """Copy the state of a states."""
+        """Copy the state arrays."""
         names = ("heading", "stride", "turn_rate", "phase", "carrying", "opponent", "swarm")
         return cls(states.positions.copy(), *(states.robots[name].copy() for name in names))
 
 
 class ReferenceKernel:
-    """Does what the compiled `Kernel` does, plainly; the robots' state is handed to each call."""
+    """Plain counterpart of the compiled `Kernel`; each call gets the state of the robots."""
 
     def __init__(self, game: Game, arena: Arena) -> None:
         parameters, body = game.parameters, game.body
@@ -74,9 +74,9 @@ class ReferenceKernel:
         self.stage = 0
 
     def advance(self, state: State, tick: int, until: int) -> tuple[int, list[Event]]:
-        """Go on to the next decision, at most to the start of period `until`; writes `state`.
+        """Advance to the next decision, at most to the start of period `until`; writes `state`.
 
-        A period whose pick-ups and deposits have been decided on goes on to its percepts in any case.
+        If the pick-ups and deposits of a period are done, its percepts follow in any case.
         """
         while tick < until or self.stage == 1:
             if self.stage < 2:
@@ -92,7 +92,7 @@ class ReferenceKernel:
         return tick, []
 
     def find_pucks(self, state: State) -> list[Event]:
-        """Return who can pick a puck up, or deposit one."""
+        """Return the robots that can pick up or deposit a puck."""
         events = []
         for robot, place in enumerate(state.positions):
             if state.carrying[robot]:
@@ -108,7 +108,7 @@ class ReferenceKernel:
         return events
 
     def perceive(self, state: State) -> list[Event]:
-        """Return what each robot must decide on, at most one event a robot."""
+        """Return the decisions due, at most one event per robot."""
         dx, dy, distance = offsets(state.positions)
         bearing = wrap(np.arctan2(dy, dx) - state.heading[:, None])
         found = (self._perceive_one(state, i, distance[i], bearing[i]) for i in range(len(distance)))

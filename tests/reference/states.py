@@ -20,7 +20,7 @@ _TRIES = 200
 
 @dataclass(frozen=True)
 class Scene:
-    """A game, its arena, and robots in the middle of it."""
+    """A game, its arena and a state of its robots."""
 
     game: Game
     arena: Arena
@@ -37,7 +37,7 @@ def unit(angle: float) -> Floats:
 
 
 def make_scene(game: Game, positions: ArrayLike, headings: ArrayLike, stride: ArrayLike) -> Scene:
-    """Put robots that do nothing but drive into a game, S1's first."""
+    """Put robots that only drive into a game, those of S1 first."""
     sizes = [swarm.size for swarm in game.swarms]
     swarm_of = np.repeat(np.arange(len(sizes)), sizes)
     places, directions = (np.array(each, dtype=np.float64) for each in (positions, headings))
@@ -75,10 +75,10 @@ def games(draw: st.DrawFn, largest: int = 60) -> Game:
 
 @st.composite
 def scenes(draw: st.DrawFn, largest: int = 60) -> Scene:
-    """Draw a game and robots in the middle of it.
+    """Draw a game and a state of its robots.
 
-    What is continuous comes from a numpy generator with a drawn seed: so no two distances are equal and
-    none is a round number, and the one right answer does not hang on the last bit.
+    Continuous values come from a numpy generator with a drawn seed: no two distances are equal or round, so
+    the result does not depend on the last bit.
     """
     game = draw(games(largest))
     draws = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
@@ -148,7 +148,7 @@ def game_of(n: int, friction: float = 0.18, push_share: float = 0.0) -> Game:
 
 
 def play_period(scene: Scene) -> dict[tuple[int, int], tuple[int, int, int, float]]:
-    """Play one period without decisions; return what each robot was told, by (robot, kind)."""
+    """Play one period without decisions; return its events by (robot, kind)."""
     kernel, told = scene.kernel(), {}
     while size := kernel.advance(0, 1)[1]:
         for robot, kind, other, active, vacant, angle in kernel.events[:size].tolist():

@@ -1,4 +1,4 @@
-"""The game as a Mesa model: Mesa's view is always true, and what it collects has the documented columns."""
+"""The game as a Mesa model: space, samples, tables and results."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""A game as data: its defaults, what it derives, and what it refuses."""
+"""Games as data: defaults, derived values, validation."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""Grids: conditions at every combination of values, and what they refuse."""
+"""Grids: conditions at every combination of values, and validation."""
 
 import tomllib
 from typing import Any

@@ -1,4 +1,4 @@
-"""Scenarios as data: proportions, the games they stand for, and what they refuse."""
+"""Scenarios as data: proportions, games, validation, TOML."""
 
 import math
 import tomllib
