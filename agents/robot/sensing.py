@@ -168,24 +168,11 @@ def sensed_robots(
     half: float,
     active_range: float,
 ) -> tuple[int, ...]:
-    """Return the robot that each of the eight sensors reads at the start of a conflict.
+    """Return the robot that each sensor reads at the start of a conflict with `met`, −1 for none.
 
-    An active sensor reads the nearest robot or wall in its sector, as in `sense`. The sensor towards the
-    opponent always reads the opponent.
-
-    Parameters
-    ----------
-    robot, met : int
-        The sensing robot and its opponent.
-    forward_x, forward_y, positions, radius, half
-        As in `sense`.
-    active_range : float
-        A sensor is active if the nearest surface in its sector is within this distance from the own surface.
-
-    Returns
-    -------
-    tuple of int, length 8
-        Robots, −1 for none, starting with the sensor ahead, counter-clockwise.
+    Sensors and parameters are those of `sense`. A sensor is active if the nearest robot or wall in its sector is
+    within `active_range`, from surface to surface; it reads this robot or wall. The sensor towards the opponent
+    always reads the opponent.
     """
     nearest = np.full(SENSORS, active_range)
     read = np.full(SENSORS, -1)

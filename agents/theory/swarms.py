@@ -28,17 +28,8 @@ def opponents_utility(u: _Numbers) -> _Numbers:
 def utility_between(u: ArrayLike, swarm_of: Sequence[int]) -> Floats:
     """Return Σ_{i∈S_k} u_i^m, which is −Σ_{j∈S_m} u_j^k between two swarms (Eq. 3.2).
 
-    Parameters
-    ----------
-    u : array_like of float, shape (N, K)
-        u_i^m.
-    swarm_of : sequence of int, length N
-        Swarm of each player.
-
-    Returns
-    -------
-    ndarray of float64, shape (K, K)
-        Row k, column m: utility of swarm k from its interactions with swarm m.
+    `swarm_of` is the swarm of each of the N players. The result has shape (K, K), with the utility of swarm k
+    from its interactions with swarm m in row k, column m.
     """
     u = np.asarray(u, dtype=float)
     between = np.zeros((u.shape[1], u.shape[1]))
@@ -64,21 +55,7 @@ def player_utilities(u: ArrayLike) -> Floats:
 
 
 def swarm_utilities(utilities: ArrayLike, swarm_of: Sequence[int], swarms: int) -> Floats:
-    """Return U_Sk = Σ_{i∈S_k} U_i of each swarm (Eq. 3.5).
-
-    Parameters
-    ----------
-    utilities : array_like of float, shape (N,)
-        U_i.
-    swarm_of : sequence of int, length N
-        Swarm of each player.
-    swarms : int
-        K.
-
-    Returns
-    -------
-    ndarray of float64, shape (K,)
-    """
+    """Return U_Sk = Σ_{i∈S_k} U_i of each of K swarms (Eq. 3.5), shape (K,), from U_i, shape (N,)."""
     totals = np.zeros(swarms)
     np.add.at(totals, np.asarray(swarm_of, dtype=int), np.asarray(utilities, dtype=float))
     return totals

@@ -53,14 +53,8 @@ def pair_utility(own: Interaction, other: Interaction) -> float:
 def inter_utility(own: Interaction, opponents: Sequence[Interaction]) -> float:
     """Return u = n_m (β_i T(p_i) − mean[βT(p)]) − n_m (α_i T(a_i) − mean[αT(a)]) (Eqs. 4.5, 4.6).
 
-    The sum over all robots of two swarms that meet each other is zero (Lemma 19).
-
-    Parameters
-    ----------
-    own : Interaction
-        Robot i.
-    opponents : sequence of Interaction, length n_m
-        The robots of one other swarm that it met.
+    The sum over all robots of two swarms that meet each other is zero (Lemma 19). `opponents` are the n_m
+    robots of one other swarm that robot i met.
     """
     n_m = len(opponents)
     program = own.beta * own.t_p - _mean([j.beta * j.t_p for j in opponents])
@@ -71,14 +65,8 @@ def inter_utility(own: Interaction, opponents: Sequence[Interaction]) -> float:
 def mixed_utility(own: Interaction, n_k: int, *opponents: Sequence[Interaction]) -> float:
     """Return U_i = u_i^k + Σ_{m≠k} u_i^m, for meeting several swarms at once (Eq. 4.7, Props. 20, 21).
 
-    Parameters
-    ----------
-    own : Interaction
-        Robot i.
-    n_k : int
-        Number of robots met of its own swarm.
-    *opponents : sequence of Interaction
-        The robots met of each other swarm: one sequence in Prop. 20, several in Prop. 21.
+    Robot i met `n_k` robots of its own swarm and `opponents` of each other swarm: one sequence in Prop. 20,
+    several in Prop. 21.
     """
     return intra_utility(n_k, *own) + sum(inter_utility(own, swarm) for swarm in opponents)
 
@@ -112,14 +100,8 @@ def approximate_wlu(
 
     W_i = (n_k + 2 n_m) β_i T(p_i) − (n_k + 2 n_m) α_i T(a_i) − n_k (mean_k[αT(a)] + mean_k[βT(a)])
     + n_m (2 mean_m[αT(a)] + mean_m[βT(a)] − mean_m[βT(p)]). The source has a minus
-    before the last term; inserting Eqs. 4.2, 4.5 and 4.10 to 4.13 into Thm 13 gives a plus.
-
-    Parameters
-    ----------
-    own : Interaction
-        Robot i.
-    mates, opponents : sequence of Interaction, lengths n_k and n_m
-        The robots that it met of its own swarm and of all other swarms.
+    before the last term; inserting Eqs. 4.2, 4.5 and 4.10 to 4.13 into Thm 13 gives a plus. `mates` and
+    `opponents` are the n_k and n_m robots that robot i met of its own swarm and of all others.
     """
     n_k, n_m = len(mates), len(opponents)
     weight = n_k + 2 * n_m
