@@ -170,9 +170,9 @@ def sensed_robots(
 ) -> tuple[int, ...]:
     """Return the robot that each sensor reads at the start of a conflict with `met`, −1 for none.
 
-    Sensors and parameters are those of `sense`. A sensor is active if the nearest robot or wall in its sector is
-    within `active_range`, from surface to surface; it reads this robot or wall. The sensor towards the opponent
-    always reads the opponent.
+    Sensors and parameters are those of `sense`. A sensor is active if the nearest robot or wall in its sector
+    is within `active_range`, from surface to surface; it reads this robot or wall. The sensor towards the
+    opponent always reads the opponent.
     """
     nearest = np.full(SENSORS, active_range)
     read = np.full(SENSORS, -1)
