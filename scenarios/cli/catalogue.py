@@ -11,7 +11,7 @@ from kswarms.scenarios.cli.options import complete_ids
 from kswarms.scenarios.cli.printing import format_duration, print_columns
 from kswarms.scenarios.description.condition import Condition
 from kswarms.scenarios.description.scenario import Scenario, toml_of
-from kswarms.scenarios.runs.cost import cpu_seconds
+from kswarms.scenarios.runs.run import cpu_seconds
 
 
 def list_scenarios() -> None:

@@ -1,5 +1,6 @@
 """``status`` and ``replay``: the state of a results directory, and one of its runs played again."""
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -9,13 +10,6 @@ from kswarms.scenarios.cli.printing import format_duration, print_columns
 from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.ledger import Ledger
 from kswarms.scenarios.study.lock import lock_holder
-from kswarms.scenarios.study.summary import (
-    failed_runs,
-    points_by_scenario,
-    replay_command,
-    runs_by_code,
-    runs_by_status,
-)
 
 Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Results directory of `kswarms run`.")]
 
@@ -27,23 +21,22 @@ def status(directory: Directory) -> None:
     """
     with Ledger(directory / LEDGER_FILE) as ledger:
         heads = ("scenario", "done", "failed", "missing", "CPU time")
-        rows = [(name, *_cells(counts)) for name, counts in points_by_scenario(ledger).items()]
-        rows.append(("runs, each once", *_cells(runs_by_status(ledger))))
+        rows = [(name, *_cells(counts)) for name, counts in ledger.points_by_scenario().items()]
+        rows.append(("runs, each once", *_cells(ledger.runs_by_status())))
         print_columns([heads, *rows], left=(0,))
         typer.echo()
         sessions = ledger.sessions()
         typer.echo(f"sessions: {len(sessions)}, the first of {sessions[0]['started'] if sessions else '–'}")
-        for code, runs in runs_by_code(ledger).items():
+        for code, runs in ledger.runs_by_code().items():
             typer.echo(f"played by: kswarms {code}, {runs} runs")
         if user := lock_holder(directory):
             typer.echo(f"in use by: {user}")
-        for failed in failed_runs(ledger):
-            run, scenario, condition, n, seed = failed.point
+        for (run, scenario, condition, n, seed), error, trace in ledger.failed_runs():
             label = f"{scenario} {condition}".strip()
-            typer.echo(f"\nfailed: {label}, n={n}, seed={seed}: {failed.error}")
-            for line in _last_call(failed.trace):
+            typer.echo(f"\nfailed: {label}, n={n}, seed={seed}: {error}")
+            for line in _last_call(trace):
                 typer.echo(f"  {line}")
-            typer.echo(f"  again: {replay_command(directory, run)}")
+            typer.echo(f"  again: kswarms replay {shlex.quote(str(directory))} {run}")
 
 
 def replay(

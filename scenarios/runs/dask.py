@@ -15,19 +15,9 @@ _TIMEOUT: Final = 10
 
 @contextmanager
 def dask_executor(address: str) -> Iterator[tuple[Executor, int]]:
-    """Connect to a cluster; yield an executor that plays on it and its number of parallel runs.
+    """Connect to a Dask scheduler (``tcp://host:8786``); yield an executor and its number of parallel runs.
 
-    On exit, waiting tasks are cancelled; tasks that are running finish unnoticed.
-
-    Parameters
-    ----------
-    address : str
-        Address of the scheduler, as ``tcp://host:8786``.
-
-    Raises
-    ------
-    InputError
-        If Dask is not installed, or no scheduler answers.
+    On exit, waiting tasks are cancelled. Running tasks finish, and their results are discarded.
     """
     try:
         from distributed import Client
@@ -38,11 +28,8 @@ def dask_executor(address: str) -> Iterator[tuple[Executor, int]]:
         get_address_host_port(address)  # the client of a malformed address hangs when it is deleted
         client = Client(address, timeout=_TIMEOUT, set_as_default=False)
     except (OSError, ValueError) as error:
-        reason = " ".join(str(error).split())
-        raise InputError(
-            "scheduler", address, f"must be the address of a Dask scheduler ({reason})"
-        ) from error
+        rule = f"must be the address of a Dask scheduler ({' '.join(str(error).split())})"
+        raise InputError("scheduler", address, rule) from error
     with client:
         # Not pure: Dask would treat equal runs as one task and cache its result.
-        executor = client.get_executor(pure=False)
-        yield executor, max(_MIN_RUNS, sum(client.nthreads().values()))
+        yield client.get_executor(pure=False), max(_MIN_RUNS, sum(client.nthreads().values()))

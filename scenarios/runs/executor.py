@@ -14,14 +14,14 @@ from kswarms.scenarios.runs.run import Run, code_version
 def play_through(
     executor: Executor, waiting: deque[Run], at_once: int, record: str
 ) -> Generator[tuple[Run, Outcome | Failure | None, float], None, None]:
-    """Play runs through an executor, at most `at_once` at a time, and yield each with its result as it ends.
+    """Play runs through an executor, at most `at_once` at a time; yield each with result and CPU time (s).
 
     The result is None if the executor broke during the run. Runs not yet submitted then stay in `waiting`.
     """
     ended: SimpleQueue[Future[Any]] = SimpleQueue()
     playing: dict[Future[Any], Run] = {}
     broken = False
-    while playing or (waiting and not broken):
+    while True:
         while waiting and len(playing) < at_once and not broken:
             try:
                 future = executor.submit(attempt, waiting[0], record, code_version())
@@ -31,7 +31,7 @@ def play_through(
                 playing[future] = waiting.popleft()
                 future.add_done_callback(ended.put)
         if not playing:
-            break
+            return
         future = ended.get()
         run = playing.pop(future)
         error = CancelledError() if future.cancelled() else future.exception()

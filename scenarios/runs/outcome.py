@@ -9,26 +9,19 @@ from kswarms.scenarios.runs.run import Run
 
 @dataclass(frozen=True)
 class Outcome:
-    """The results of a game; `kswarms.agents.common.columns` describes the columns.
-
-    Attributes
-    ----------
-    swarms : list of dict
-        A row of ``runs.parquet`` for each swarm, without the columns of its point.
-    policies : list of dict
-        Rows of ``policies.parquet``, likewise; empty if no swarm learns.
-    records : dict of str to dict of str to list
-        The recorded tables, each as columns by name.
-    """
+    """The results of a game; `kswarms.agents.common.columns` describes the columns."""
 
     swarms: list[dict[str, Any]]
+    """A row of ``runs.parquet`` for each swarm, without the columns from ``run`` to ``seed``."""
     policies: list[dict[str, Any]]
+    """Rows of ``policies.parquet``, without the same columns; empty if no swarm learns."""
     records: dict[str, dict[str, list[Any]]]
+    """The columns of each recorded table, by name of the table and of the column."""
 
 
 @dataclass(frozen=True)
 class Failure:
-    """The error of a run, in one line, and its traceback (empty if there is none)."""
+    """The error of a run in one line, and its traceback (empty if there is none)."""
 
     error: str
     trace: str = ""
@@ -45,15 +38,7 @@ Result = tuple[Run, Outcome | Failure, float]
 
 
 class RunError(RuntimeError):
-    """A run failed.
-
-    Parameters
-    ----------
-    message : str
-        The run and its error.
-    trace : str
-        The traceback of the error.
-    """
+    """A run failed. `trace` is the traceback of its error, empty if there is none."""
 
     def __init__(self, message: str, trace: str = "") -> None:
         super().__init__(message)

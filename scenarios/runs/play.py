@@ -11,14 +11,12 @@ from kswarms.scenarios.runs.run import Run, code_version, require_unchanged
 
 
 def play(run: Run, record: str = "") -> Outcome:
-    """Play a run.
+    """Play a run and return its results.
 
     Parameters
     ----------
-    run : Run
-        The game and its seed.
     record : str
-        Names of the tables to record, separated by commas.
+        Names of the tables to record (`RECORDED_TABLES`), separated by commas.
 
     Raises
     ------
@@ -53,9 +51,9 @@ def run_errors(game: str) -> Iterator[None]:
 
 
 def attempt(run: Run, record: str, code: str) -> tuple[Outcome | Failure, float]:
-    """Play a run as `play` does; return its outcome or failure, and its CPU time (s).
+    """Play a run in a worker; return its outcome or failure, and its CPU time (s).
 
-    The worker must have the code version `code`, since workers of a cluster may have another.
+    The run fails if the `code_version` of the worker is not `code`, as may happen on a cluster.
     """
     if code != code_version():
         return Failure(f"the worker has kswarms {code_version()}, it must have {code}"), 0.0

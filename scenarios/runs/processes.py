@@ -18,12 +18,8 @@ from kswarms.scenarios.runs.run import Run
 
 GAMES_PER_WORKER: Final = 2500
 """Games after which worker processes are replaced, which bounds the memory that Mesa keeps in each."""
-
 TRIES: Final = 3
 """A run is failed when its worker died this many times while it was played alone."""
-
-_NO_START: Final = 'needs worker processes, and none started: is `if __name__ == "__main__"` missing?'
-_DEATHS: Final = "its worker process died {} times: killed or out of memory?"
 
 
 def play_in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[Result, None, None]:
@@ -31,11 +27,6 @@ def play_in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[
 
     A process that dies breaks the executor, and any of the runs played then may be the cause (too much
     memory, for example). These runs are retried one at a time.
-
-    Raises
-    ------
-    InputError
-        If no process starts, because the calling script has no main guard.
     """
     suspects: deque[Run] = deque()
     deaths: Counter[str] = Counter()
@@ -52,12 +43,14 @@ def play_in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[
                     yield run, result, seconds
                     continue
                 if not started.is_set():
-                    raise InputError("jobs", jobs, _NO_START)
+                    reason = 'none started: is `if __name__ == "__main__"` missing?'
+                    raise InputError("jobs", jobs, f"needs worker processes, and {reason}")
                 deaths[run.digest] += alone
                 if deaths[run.digest] < TRIES:
                     suspects.appendleft(run)
                 else:
-                    yield run, Failure(_DEATHS.format(TRIES)), 0.0
+                    error = f"its worker process died {TRIES} times: killed or out of memory?"
+                    yield run, Failure(error), 0.0
         if not alone:
             waiting.extendleft(reversed(batch))
 
@@ -98,7 +91,6 @@ def _start_worker(started: Event) -> None:
 
 def _exit_with_parent() -> None:
     """End this process when its parent ends, even if the parent is killed."""
-    parent = parent_process()
-    if parent is not None:
+    if (parent := parent_process()) is not None:
         parent.join()
         os._exit(1)

@@ -1,11 +1,12 @@
 """Runs: a game with a seed, and the runs of scenarios."""
 
-import hashlib
 import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
+from hashlib import sha256
 from pathlib import Path
+from typing import Final
 
 from kswarms import __version__
 from kswarms.agents.common.errors import InputError
@@ -13,29 +14,24 @@ from kswarms.agents.policies.spec import parse_policies
 from kswarms.model.description.game import Game
 from kswarms.scenarios.description.condition import Condition
 from kswarms.scenarios.description.scenario import Scenario
-from kswarms.scenarios.runs.cost import cpu_seconds
+
+_ROBOT_SECOND: Final = 5e-6
+"""CPU time per robot and second of play, at a control period of 0.1 s (s)."""
+_ROBOT_SECONDS_PER_PUCK: Final = 300.0
+"""Play per puck, in games that end at a number of pucks (robot-seconds)."""
 
 
 @dataclass(frozen=True)
 class Run:
-    """One game with one seed.
-
-    Attributes
-    ----------
-    digest : str
-        Identifies what is simulated (see `digest`).
-    game : Game
-        The game.
-    seed : int
-        Its seed, ≥ 0.
-    labels : tuple of (scenario, condition)
-        The curves that contain the run.
-    """
+    """One game with one seed."""
 
     digest: str
+    """Identifies what is simulated (see `digest`)."""
     game: Game
     seed: int
+    """Seed of the game, ≥ 0."""
     labels: tuple[tuple[str, str], ...]
+    """Scenario and condition of each curve that contains the run."""
 
     def __str__(self) -> str:
         scenario, condition = self.labels[0]
@@ -53,11 +49,18 @@ class Run:
         return cpu_seconds(self.n, game.learning, game.duration, game.puck_limit, game.parameters.period)
 
 
+def cpu_seconds(n: int, learning: float, duration: float, puck_limit: int | None, period: float) -> float:
+    """Estimate the CPU time (s) of a run of `n` robots, given its durations and control period (s)."""
+    if puck_limit is not None:
+        duration = min(duration, puck_limit * _ROBOT_SECONDS_PER_PUCK / n)
+    return _ROBOT_SECOND * n * (learning + duration) * (0.1 / period)
+
+
 @cache
 def code_version() -> str:
-    """Return the version of the package with a hash of `agents` and `model`, which decide the results."""
+    """Return the version of the package and a hash of the code that decides the results."""
     root = Path(__file__).resolve().parents[2]
-    content = hashlib.sha256()
+    content = sha256()
     for package in ("agents", "model"):
         for path in sorted((root / package).rglob("*.py")):
             content.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())
@@ -67,9 +70,8 @@ def code_version() -> str:
 def digest(game: Game, seed: int) -> str:
     """Return an identifier of what is simulated: 16 hexadecimal digits of a SHA-256.
 
-    It covers the game, the learned policies and user code that it loads, the seed and the version of the
-    package, so runs with equal digests have equal results. In a million runs, the probability of a
-    collision of 64 bits is 3 in 10⁸.
+    It covers the game, the files that it loads (learned policies, user code), the seed and the version of the
+    package: equal digests mean equal results. A million runs have a collision with probability 3 in 10⁸.
     """
     return digests(game, (seed,))[0]
 
@@ -77,11 +79,11 @@ def digest(game: Game, seed: int) -> str:
 def digests(game: Game, seeds: Iterable[int]) -> list[str]:
     """Return the `digest` of a game with each of several seeds."""
     content = {"game": game.model_dump(mode="json"), "files": _file_hashes(game), "version": __version__}
-    return [_sha256(_json({**content, "seed": seed}).encode())[:16] for seed in seeds]
+    return [sha256(_json({**content, "seed": seed}).encode()).hexdigest()[:16] for seed in seeds]
 
 
 def describe_curve(condition: Condition, n: int) -> str:
-    """Return all that decides the results of a curve, except seed and `n` (any of its densities), as JSON."""
+    """Return as JSON what decides the results of a curve, except the seed and `n` (any of its densities)."""
     return _json({"condition": condition.model_dump(mode="json"), "files": _file_hashes(condition.game(n))})
 
 
@@ -89,12 +91,8 @@ def _json(content: object) -> str:
     return json.dumps(content, sort_keys=True, separators=(",", ":"))
 
 
-def _sha256(content: bytes) -> str:
-    return hashlib.sha256(content).hexdigest()
-
-
 def _file_hashes(game: Game) -> list[str]:
-    return [_sha256(file.read_bytes()) for file in _files(game)]
+    return [sha256(file.read_bytes()).hexdigest() for file in _files(game)]
 
 
 def _files(game: Game) -> list[Path]:
@@ -103,13 +101,7 @@ def _files(game: Game) -> list[Path]:
 
 
 def require_unchanged(run: Run) -> None:
-    """Check that the files that a run loads are those of its digest.
-
-    Raises
-    ------
-    InputError
-        If a file was changed or removed.
-    """
+    """Raise an `InputError` if a file that the run loads has changed since its digest was computed."""
     loaded = _files(run.game)
     try:
         changed = bool(loaded) and digest(run.game, run.seed) != run.digest
@@ -121,7 +113,10 @@ def require_unchanged(run: Run) -> None:
 
 
 def expand(scenarios: Iterable[Scenario], first_seed: int = 0) -> list[Run]:
-    """Return the runs of scenarios: conditions × densities × consecutive seeds, each game and seed once."""
+    """Return the runs of scenarios: conditions × densities × seeds, each game and seed once.
+
+    The seeds of a scenario are consecutive, from `first_seed`. A run in several curves has all their labels.
+    """
     runs: dict[str, Run] = {}
     for scenario in scenarios:
         seeds = range(first_seed, first_seed + scenario.seeds)

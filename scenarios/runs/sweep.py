@@ -4,7 +4,6 @@ from collections import deque
 from collections.abc import Generator, Sequence
 from concurrent.futures import Executor
 from contextlib import closing
-from typing import Final
 
 from kswarms.scenarios.runs.executor import play_through
 from kswarms.scenarios.runs.outcome import Failure, Outcome, Result, RunError
@@ -12,40 +11,20 @@ from kswarms.scenarios.runs.play import attempt
 from kswarms.scenarios.runs.processes import play_in_processes
 from kswarms.scenarios.runs.run import Run, code_version
 
-_NO_WORKERS: Final = "all workers exited before the sweep finished"
-
 
 def sweep(
     runs: Sequence[Run], jobs: int = 1, record: str = "", executor: Executor | None = None
 ) -> Generator[Result, None, None]:
-    """Play runs, the longest first, and yield each result as its run ends.
-
-    Results are not kept, so memory does not grow with the number of runs.
-
-    Parameters
-    ----------
-    runs : sequence of Run
-        The runs.
-    jobs : int
-        Number of worker processes; with 1, this process plays. An executor gets 2 × `jobs` runs at a time.
-    record : str
-        Names of the tables to record, separated by commas.
-    executor : concurrent.futures.Executor, optional
-        Plays the runs in place of worker processes of this machine.
-
-    Raises
-    ------
-    RunError
-        If the executor breaks.
-    """
+    """Play runs as `play_all` does; yield each with its outcome or failure, and its CPU time (s)."""
     waiting = deque(sorted(runs, key=lambda run: run.effort, reverse=True))
     if executor is not None:
+        no_workers = RunError("all workers exited before the sweep finished")
         for run, result, seconds in play_through(executor, waiting, 2 * jobs, record):
             if result is None:
-                raise RunError(_NO_WORKERS)
+                raise no_workers
             yield run, result, seconds
         if waiting:
-            raise RunError(_NO_WORKERS)
+            raise no_workers
     elif min(jobs, len(runs)) > 1:
         yield from play_in_processes(waiting, jobs, record)
     else:
@@ -58,10 +37,16 @@ def play_all(
 ) -> Generator[tuple[Run, Outcome], None, None]:
     """Play runs, the longest first, and yield each with its outcome as it ends; stop at the first failure.
 
+    Outcomes are not kept, so memory does not grow with the number of runs.
+
     Parameters
     ----------
-    runs, jobs, record, executor
-        As for `sweep`.
+    jobs : int
+        Number of worker processes; with 1, this process plays. An executor gets 2 × `jobs` runs at a time.
+    record : str
+        Names of the tables to record (`RECORDED_TABLES`), separated by commas.
+    executor : concurrent.futures.Executor, optional
+        Plays the runs in place of worker processes of this machine.
 
     Raises
     ------

@@ -9,13 +9,7 @@ from kswarms.agents.common.errors import InputError
 
 
 def make_directory(directory: Path) -> None:
-    """Create a results directory unless it exists, and check that it is writable.
-
-    Raises
-    ------
-    InputError
-        If it cannot be created or written to.
-    """
+    """Create a results directory unless it exists; raise an `InputError` if it is not writable."""
     try:
         directory.mkdir(parents=True, exist_ok=True)
         with TemporaryFile(dir=directory):
@@ -25,12 +19,6 @@ def make_directory(directory: Path) -> None:
 
 
 def write_json(path: Path, content: object) -> None:
-    """Write a JSON file atomically.
-
-    Raises
-    ------
-    OSError
-        If writing fails; an existing file is then unchanged.
-    """
+    """Write a JSON file atomically: if writing fails, an existing file is unchanged."""
     with atomic_path(path) as file:
         file.write_text(json.dumps(content, indent=1) + "\n")

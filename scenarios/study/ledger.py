@@ -1,19 +1,20 @@
 """The ledger of a study: the requested runs and their results, in an SQLite file that survives crashes.
 
 A run is a row under its digest, so it is played once, however many curves contain it. Its points in these
-curves are rows of another table. Each run is committed on its own, by the one process that writes.
+curves are rows of another table. One process writes, and commits each run on its own.
 """
 
 import json
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any, NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple, Self
 
 from kswarms import __version__
 from kswarms.agents.common.errors import InputError
 from kswarms.model.description.game import Game
 from kswarms.scenarios.runs.outcome import Failure, Outcome
 from kswarms.scenarios.runs.run import Run, code_version, digest
-from kswarms.scenarios.study.database import Database
+from kswarms.scenarios.study.database import open_database, os_errors
 
 Curve = tuple[str, str]
 """Scenario and condition."""
@@ -29,21 +30,41 @@ class Point(NamedTuple):
     seed: int
 
 
-class Ledger(Database):
-    """An open ledger; its parameters and errors are those of `Database`."""
+class Ledger:
+    """An open ledger, a context manager. If `new`, its file is created unless it exists.
 
-    # ----------------------------------------------------------------------------------------------- requests
+    A file that is not a ledger of this format raises an `InputError`. Every method raises an `OSError` if the
+    file cannot be read or written; committed data is kept.
+    """
+
+    def __init__(self, path: Path, new: bool = False) -> None:
+        self.path = path
+        self._db = open_database(path, new)  # as a context manager, it is a transaction
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self._db.close()
+
+    def _query(self, sql: str, *values: object) -> Iterator[Any]:
+        with os_errors(self.path):
+            for row in self._db.execute(sql, values):  # noqa: UP028  # `yield from` may close it too late
+                yield row
+
+    def _parse_json(self, text: str) -> Any:
+        try:
+            return json.loads(text)
+        except ValueError as error:
+            raise OSError(f"{self.path}: is damaged ({error})") from error
 
     def plan(self, scenarios: dict[str, str], curves: dict[Curve, str], runs: Sequence[Run]) -> None:
         """Add runs, the TOML of their scenarios by id, and the descriptions of their curves.
 
-        Raises
-        ------
-        InputError
-            If the ledger has runs of another version, or a different curve of the same name; then nothing
-            is added.
+        If the ledger has runs of another version, or a different curve of the same name, an `InputError` is
+        raised and nothing is added.
         """
-        with self._transaction():
+        with os_errors(self.path), self._db:
             self._refuse_mixtures(curves)
             self._db.executemany("INSERT OR REPLACE INTO scenarios VALUES (?, ?)", scenarios.items())
             self._db.executemany(
@@ -78,45 +99,42 @@ class Ledger(Database):
 
     def unfinished(self, runs: Iterable[Run], records: Sequence[str]) -> list[Run]:
         """Return the runs that are not done, or lack one of the recorded tables."""
-        done = {run for (run,) in self.query("SELECT run FROM runs WHERE status = 'done'")}
+        done = {run for (run,) in self._query("SELECT run FROM runs WHERE status = 'done'")}
         for name in records:
-            done &= {run for (run,) in self.query("SELECT run FROM records WHERE name = ?", name)}
+            done &= {run for (run,) in self._query("SELECT run FROM records WHERE name = ?", name)}
         return [run for run in runs if run.digest not in done]
 
-    # ------------------------------------------------------------------------------------------------ results
-
-    def add(
-        self, run: Run, result: Outcome | Failure, seconds: float, records: dict[str, bytes] | None = None
-    ) -> None:
+    def add(self, run: Run, result: Outcome | Failure, seconds: float, records: dict[str, bytes]) -> None:
         """Store the result of a planned run, its CPU time (s) and its packed records by name.
 
         A run that is done and fails when it is replayed for a record keeps its status and results.
         """
-        error: tuple[str | None, str | None] = (None, None)
-        played = (code_version(), seconds)
-        with self._transaction():
+        with os_errors(self.path), self._db:
             if isinstance(result, Failure):
-                error = (result.error, result.trace)
+                self._db.execute(
+                    "UPDATE runs SET error = ?, traceback = ? WHERE run = ?",
+                    (result.error, result.trace, run.digest),
+                )
                 self._db.execute(
                     "UPDATE runs SET status = 'failed', code = ?, seconds = ?"
                     " WHERE run = ? AND status != 'done'",
-                    (*played, run.digest),
+                    (code_version(), seconds, run.digest),
                 )
             else:
+                rows = (json.dumps(result.swarms), json.dumps(result.policies))
                 self._db.execute(
-                    "UPDATE runs SET status = 'done', code = ?, seconds = ?, swarms = ?, policies = ?"
-                    " WHERE run = ?",
-                    (*played, json.dumps(result.swarms), json.dumps(result.policies), run.digest),
+                    "UPDATE runs SET status = 'done', code = ?, seconds = ?, swarms = ?, policies = ?,"
+                    " error = NULL, traceback = NULL WHERE run = ?",
+                    (code_version(), seconds, *rows, run.digest),
                 )
-            self._db.execute("UPDATE runs SET error = ?, traceback = ? WHERE run = ?", (*error, run.digest))
             self._db.executemany(
                 "INSERT OR REPLACE INTO records VALUES (?, ?, ?)",
-                ((run.digest, name, rows) for name, rows in (records or {}).items()),
+                ((run.digest, name, table) for name, table in records.items()),
             )
 
     def results(self, name: str) -> Iterator[tuple[Point, list[dict[str, Any]]]]:
         """Yield the rows ``swarms`` or ``policies`` of each finished point, ordered by its columns."""
-        for *point, rows in self.query(
+        for *point, rows in self._query(
             f"SELECT run, scenario, condition, n, points.seed, {name} FROM points JOIN runs USING (run)"
             f" WHERE status = 'done' AND {name} != '[]' ORDER BY scenario, condition, n, points.seed"
         ):
@@ -125,36 +143,30 @@ class Ledger(Database):
     def grid_points(self) -> dict[Curve, dict[str, Any]]:
         """Return the values that a grid sets, by field, of each curve with a grid."""
         points = {}
-        for scenario, condition, text in self.query("SELECT * FROM curves ORDER BY scenario, condition"):
+        for scenario, condition, text in self._query("SELECT * FROM curves ORDER BY scenario, condition"):
             if point := self._parse_json(text)["condition"].get("grid_point"):
                 points[scenario, condition] = dict(point)
         return points
 
     def records(self, name: str) -> Iterator[tuple[str, bytes]]:
-        """Yield a recorded table, packed, of each finished run that has it, ordered by digest."""
-        yield from self.query(
+        """Yield each finished run that has a recorded table, by its digest, and the packed table."""
+        return self._query(
             "SELECT run, rows FROM records JOIN runs USING (run)"
             " WHERE name = ? AND status = 'done' ORDER BY run",
             name,
         )
 
     def run(self, name: str) -> Run:
-        """Return the run with a digest.
-
-        Raises
-        ------
-        InputError
-            If the ledger does not have it, or replaying it now would play a different game.
-        """
+        """Return the run with a digest; raise an `InputError` if it is missing or has become another game."""
         query = "SELECT version, description, seed FROM games JOIN runs ON game = id WHERE run = ?"
-        row = next(self.query(query, name), None)
+        row = next(self._query(query, name), None)
         if row is None:
-            reason = f"must be a run of {self.path.parent}: see the column run of its tables"
-            raise InputError("run", name, reason)
+            rule = f"must be a run of {self.path.parent}: see the column run of its tables"
+            raise InputError("run", name, rule)
         version, description, seed = row
         if version != __version__:
             raise InputError("run", name, f"was played by kswarms {version}, this is {__version__}")
-        labels = tuple(self.query("SELECT scenario, condition FROM points WHERE run = ?", name))
+        labels = tuple(self._query("SELECT scenario, condition FROM points WHERE run = ?", name))
         run = Run(name, Game(**self._parse_json(description)), seed, labels)
         if digest(run.game, run.seed) != name:
             raise InputError("run", name, "loads a file that has changed since it was played")
@@ -162,32 +174,48 @@ class Ledger(Database):
 
     def outcome(self, name: str) -> tuple[list[dict[str, Any]], list[dict[str, Any]]] | None:
         """Return the rows ``swarms`` and ``policies`` of a run, or None if it is not done."""
-        query = self.query("SELECT swarms, policies FROM runs WHERE run = ? AND status = 'done'", name)
-        row = next(query, None)
+        query = "SELECT swarms, policies FROM runs WHERE run = ? AND status = 'done'"
+        row = next(self._query(query, name), None)
         return (self._parse_json(row[0]), self._parse_json(row[1])) if row else None
 
-    # ----------------------------------------------------------------------------------------------- sessions
-
-    def begin_session(self, about: dict[str, Any]) -> int:
-        """Add a session; return its number."""
-        with self._transaction():
-            cursor = self._db.execute("INSERT INTO sessions (about) VALUES (?)", (json.dumps(about),))
-        assert cursor.lastrowid is not None
-        return cursor.lastrowid
-
-    def update_session(self, number: int, **changes: Any) -> None:
-        """Change the description of a session."""
-        ((about,),) = self.query("SELECT about FROM sessions WHERE id = ?", number)
-        with self._transaction():
-            self._db.execute(
-                "UPDATE sessions SET about = ? WHERE id = ?",
-                (json.dumps(self._parse_json(about) | changes), number),
-            )
+    def write_session(self, number: int | None, about: dict[str, Any]) -> int | None:
+        """Write the description of a session, a new one if `number` is None; return its number."""
+        with os_errors(self.path), self._db:
+            row = (number, json.dumps(about))
+            return self._db.execute("INSERT OR REPLACE INTO sessions VALUES (?, ?)", row).lastrowid
 
     def sessions(self) -> list[dict[str, Any]]:
         """Return the descriptions of all sessions, in order."""
-        return [self._parse_json(about) for (about,) in self.query("SELECT about FROM sessions ORDER BY id")]
+        return [self._parse_json(about) for (about,) in self._query("SELECT about FROM sessions ORDER BY id")]
 
     def scenarios(self) -> dict[str, str]:
         """Return the latest TOML of each scenario, by id."""
-        return dict(self.query("SELECT id, toml FROM scenarios ORDER BY id"))
+        return dict(self._query("SELECT id, toml FROM scenarios ORDER BY id"))
+
+    def points_by_scenario(self) -> dict[str, dict[str, tuple[int, float]]]:
+        """Return the number of points and the CPU time of their runs (s), by scenario and status."""
+        counts: dict[str, dict[str, tuple[int, float]]] = {}
+        for scenario, status, points, seconds in self._query(
+            "SELECT scenario, status, COUNT(*), TOTAL(seconds) FROM points JOIN runs USING (run)"
+            " GROUP BY scenario, status ORDER BY scenario"
+        ):
+            counts.setdefault(scenario, {})[status] = (points, seconds)
+        return counts
+
+    def runs_by_status(self) -> dict[str, tuple[int, float]]:
+        """Return the number of runs and their CPU time (s), by status."""
+        rows = self._query("SELECT status, COUNT(*), TOTAL(seconds) FROM runs GROUP BY status")
+        return {status: (runs, seconds) for status, runs, seconds in rows}
+
+    def runs_by_code(self) -> dict[str, int]:
+        """Return the number of runs, by the version of the code that played them."""
+        return dict(self._query("SELECT code, COUNT(*) FROM runs WHERE code NOT NULL GROUP BY code"))
+
+    def failed_runs(self) -> Iterator[tuple[Point, str, str]]:
+        """Yield the runs whose last attempt failed: a point of each, its error and traceback."""
+        for *point, error, trace in self._query(
+            "SELECT run, MIN(scenario), condition, n, points.seed, error, traceback"
+            " FROM points JOIN runs USING (run) WHERE error NOT NULL"
+            " GROUP BY run ORDER BY MIN(scenario), condition, n, points.seed"
+        ):
+            yield Point(*point), error, trace

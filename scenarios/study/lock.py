@@ -13,24 +13,16 @@ from typing import Final, TextIO
 from kswarms.agents.common.errors import InputError
 
 LOCK_FILE: Final = "lock"
-"""Name of the locked file. It names the process that holds the lock."""
-
+"""Name of the locked file."""
 _TIMEOUT: Final = 0.5
 """Lock timeout (s); `lock_holder` takes the lock for a moment."""
-_RETRY_INTERVAL: Final = 0.005
-"""Time between two attempts to lock (s)."""
 
 
 @contextmanager
 def directory_lock(directory: Path, command: str) -> Iterator[None]:
-    """Hold the lock of a directory; the file names the process and its command.
+    """Hold the lock of a directory; raise an `InputError` if another process holds it.
 
-    The operating system releases the lock if the process is killed.
-
-    Raises
-    ------
-    InputError
-        If another process holds the lock.
+    The file names the process and its command. The operating system releases the lock of a killed process.
     """
     with (directory / LOCK_FILE).open("a+") as file:
         deadline = time.monotonic() + _TIMEOUT
@@ -38,7 +30,7 @@ def directory_lock(directory: Path, command: str) -> Iterator[None]:
             if time.monotonic() >= deadline:
                 reason = f"is in use by {_read_holder(file)}; wait, or use another directory"
                 raise InputError("out", str(directory), reason)
-            time.sleep(_RETRY_INTERVAL)
+            time.sleep(0.005)
         started = datetime.now(UTC).isoformat(timespec="seconds")
         file.truncate(0)
         file.write(f"process {os.getpid()} on {socket.gethostname()} since {started} ({command})\n")

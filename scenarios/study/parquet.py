@@ -13,9 +13,6 @@ from kswarms.scenarios.study.ledger import Curve, Ledger, Point
 
 STUDY_TABLES: Final = ("runs", "policies", *RECORDED_TABLES)
 """Names of the tables of a study."""
-
-_LEDGER_COLUMNS: Final = {"runs": "swarms", "policies": "policies"}
-"""Column of the ledger with the rows of a table."""
 _POINTS_PER_PART: Final = 1000
 _ROWS_PER_GROUP: Final = 100_000
 """Minimum number of rows of a row group, which limits the memory of an export."""
@@ -53,14 +50,9 @@ def pack(records: Mapping[str, Mapping[str, list[Any]]]) -> dict[str, bytes]:
 
 
 def export(ledger: Ledger, directory: Path) -> list[Path]:
-    """Write the tables of all finished runs to a directory; return the files.
+    """Write the tables of all finished runs to a directory, except those that no run has; return the files.
 
-    A file is written for each table with rows or records. Their bytes do not depend on the order of play.
-
-    Raises
-    ------
-    OSError
-        If writing fails, or the ledger is damaged.
+    Their bytes do not depend on the order of play. If the ledger is damaged, an `OSError` is raised.
     """
     grid_columns, grid_points = _grid(ledger)
     paths = []
@@ -109,7 +101,7 @@ def _result_parts(
     ledger: Ledger, name: str, schema: pa.Schema, grid_points: Mapping[Curve, dict[str, Any]]
 ) -> Iterator[pa.Table]:
     no_grid: dict[str, Any] = dict.fromkeys(column for point in grid_points.values() for column in point)
-    points = ledger.results(_LEDGER_COLUMNS[name])
+    points = ledger.results("swarms" if name == "runs" else name)
     while some := list(islice(points, _POINTS_PER_PART)):
         rows = [
             no_grid | grid_points.get((point.scenario, point.condition), {}) | point._asdict() | row

@@ -14,7 +14,6 @@ from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from types import TracebackType
 from typing import Any, Final, Self
 
 from kswarms import __version__
@@ -29,33 +28,25 @@ from kswarms.scenarios.study.directory import make_directory, write_json
 from kswarms.scenarios.study.ledger import Ledger
 from kswarms.scenarios.study.lock import directory_lock
 from kswarms.scenarios.study.parquet import STUDY_TABLES, export, pack
-from kswarms.scenarios.study.summary import runs_by_code
 
 MANIFEST: Final = "manifest.json"
 """Name of the file that describes the origin of the results."""
-
 _TEMPORARY_TABLES: Final = f"{TEMPORARY}tables-"
 """Prefix of the temporary directory of the tables."""
-
 _ENTROPY: Final = "numpy PCG64(SeedSequence(seed, spawn_key=(robot, purpose))), and nothing else"
 
 
 class Study:
     """A directory of results, open for playing; a context manager.
 
-    On exit, also after Ctrl-C, it writes the tables and the manifest of all finished runs.
+    On exit, also after Ctrl-C, it writes the manifest and the files `tables`, with all finished runs.
 
     Parameters
     ----------
     directory : Path
-        The directory; created unless it exists.
+        Created unless it exists.
     command : str
         The command line, for the manifest and the lock.
-
-    Attributes
-    ----------
-    tables : list of Path
-        The tables written on exit.
 
     Raises
     ------
@@ -69,7 +60,6 @@ class Study:
         self.directory = directory
         self.tables: list[Path] = []
         self._command = command
-        self._resources = ExitStack()
         self._session: int | None = None
 
     def __enter__(self) -> Self:
@@ -82,20 +72,22 @@ class Study:
             remove_temporary_files(self.directory)
             self._ledger = stack.enter_context(Ledger(self.directory / LEDGER_FILE, new=True))
             self._resources = stack.pop_all()
+        self._about = _describe_session(self._command)
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, _trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _trace: object) -> None:
         with self._resources:
             if self._session is None:
                 return
             if isinstance(error, OSError):
                 with suppress(OSError):  # report the first error
-                    self._end_session(self._session, f"stopped: {error}")
+                    self._update_session(status=f"stopped: {error}", ended=_now())
                 return
-            self._write_tables()
-            self._end_session(self._session, f"stopped: {kind.__name__}" if kind else "done")
+            # If a table cannot be written, all present tables stay.
+            with TemporaryDirectory(dir=self.directory, prefix=_TEMPORARY_TABLES) as temporary:
+                written = export(self._ledger, Path(temporary))
+                self.tables = [path.replace(self.directory / path.name) for path in written]
+            self._update_session(status=f"stopped: {kind.__name__}" if kind else "done", ended=_now())
 
     def plan(
         self, scenarios: Sequence[Scenario], first_seed: int = 0, records: Sequence[str] = ()
@@ -104,12 +96,10 @@ class Study:
 
         Parameters
         ----------
-        scenarios : sequence of Scenario
-            The scenarios.
         first_seed : int
-            Seed of the first game at each density.
+            Seed of the first game at each density, ≥ 0.
         records : sequence of str
-            Recorded tables that each run must have.
+            Names of the tables that each run must have recorded (`RECORDED_TABLES`).
 
         Raises
         ------
@@ -127,25 +117,18 @@ class Study:
             runs,
         )
         waiting = self._ledger.unfinished(runs, records)
-        if self._session is None:
-            self._session = self._ledger.begin_session(_describe_session(self._command))
-        self._ledger.update_session(
-            self._session,
-            scenarios={
-                scenario.id: {"densities": scenario.densities, "seeds": scenario.seeds}
-                for scenario in scenarios
-            },
+        self._update_session(
+            scenarios={each.id: {"densities": each.densities, "seeds": each.seeds} for each in scenarios},
             first_seed=first_seed,
             records=list(records),
             runs={"asked for": len(runs), "done before": len(runs) - len(waiting)},
         )
-        self._write_manifest()
         return waiting
 
     @property
     def other_code(self) -> list[str]:
         """Versions of the code that played some of the runs, other than the present one."""
-        return [code for code in runs_by_code(self._ledger) if code != code_version()]
+        return [code for code in self._ledger.runs_by_code() if code != code_version()]
 
     def play(
         self,
@@ -154,42 +137,40 @@ class Study:
         records: Sequence[str] = (),
         executor: Executor | None = None,
     ) -> Generator[Result, None, None]:
-        """Play runs; yield each result after it is stored.
+        """Play runs; store each and then yield it with its outcome or failure, and its CPU time (s).
 
         Parameters
         ----------
         runs : sequence of Run
             Runs that `plan` returned.
         jobs, executor
-            As for `kswarms.scenarios.runs.sweep.sweep`.
+            As for `kswarms.scenarios.runs.sweep.play_all`.
         records : sequence of str
-            Recorded tables to store.
+            Names of the tables to record and store.
+
+        Raises
+        ------
+        RunError
+            If the executor breaks.
         """
         with closing(sweep(runs, jobs, ",".join(records), executor)) as results:
             for run, result, seconds in results:
-                packed = pack(result.records) if isinstance(result, Outcome) else {}
-                self._ledger.add(run, result, seconds, packed)
+                tables = pack(result.records) if isinstance(result, Outcome) else {}
+                self._ledger.add(run, result, seconds, tables)
                 yield run, result, seconds
 
-    def _write_tables(self) -> None:
-        """Write all tables to a temporary directory, then replace the present ones."""
-        with TemporaryDirectory(dir=self.directory, prefix=_TEMPORARY_TABLES) as temporary:
-            written = export(self._ledger, Path(temporary))
-            self.tables = [path.replace(self.directory / path.name) for path in written]
-
-    def _end_session(self, session: int, status: str) -> None:
-        self._ledger.update_session(session, status=status, ended=_now())
-        self._write_manifest()
-
-    def _write_manifest(self) -> None:
-        manifest = {
+    def _update_session(self, **changes: Any) -> None:
+        """Change the description of this session in the ledger, and write the manifest."""
+        self._about |= changes
+        self._session = self._ledger.write_session(self._session, self._about)
+        content = {
             "kswarms": __version__,
             "code": code_version(),
             "entropy": _ENTROPY,
             "scenarios": self._ledger.scenarios(),
             "sessions": self._ledger.sessions(),
         }
-        write_json(self.directory / MANIFEST, manifest)
+        write_json(self.directory / MANIFEST, content)
 
 
 def _refuse_foreign_tables(directory: Path) -> None:

@@ -13,7 +13,6 @@ from kswarms.model.recorder import save_policies
 from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.ledger import Ledger
-from kswarms.scenarios.study.summary import failed_runs
 
 POLICY = """
 import os
@@ -75,7 +74,7 @@ def errors_of(code: str, policy: str = "faulty.py:Faulty") -> list[str]:
     Path("mine.toml").write_text(SCENARIO.replace("POLICY", policy))
     assert invoke(RUN) == 1
     with Ledger(Path("results", LEDGER_FILE)) as ledger:
-        return [failed.error for failed in failed_runs(ledger)]
+        return [error for _, error, _ in ledger.failed_runs()]
 
 
 @pytest.mark.parametrize(
