@@ -34,9 +34,9 @@ _POLICY_NAMES: Final = [name for name in (*POLICIES, *ALIASES) if name != "learn
 
 
 @solara.component
-def Controls(session: Session, beat: solara.Reactive[int], act: Act) -> None:
+def Controls(session: Session, signal: solara.Reactive[int], act: Act) -> None:
     """Show all controls of a session."""
-    beat.get()
+    signal.get()
     form = session.form
 
     def change(**changes: Any) -> None:

@@ -37,11 +37,11 @@ start: str | Run = FIRST_SCENARIO
 """Scenario or run of a new page, set by the command line."""
 
 
-class Beats:
+class Signals:
     """Signals that update parts of the page."""
 
     def __init__(self) -> None:
-        # A unique number for each beat: two threads that increment a value could set the same number.
+        # A unique number for each signal: two threads that increment a value could set the same number.
         self._numbers = count(1)
         self.frame = solara.Reactive(0)
         self.panels = solara.Reactive(0)
@@ -49,14 +49,14 @@ class Beats:
         self.drawn = threading.Event()
         self.wake = threading.Event()
 
-    def beat(self, *parts: solara.Reactive[int]) -> None:
+    def send(self, *parts: solara.Reactive[int]) -> None:
         """Update some parts of the page."""
         for part in parts:
             part.value = next(self._numbers)
 
-    def changed(self) -> None:
+    def send_all(self) -> None:
         """Update the whole page."""
-        self.beat(self.frame, self.panels, self.controls)
+        self.send(self.frame, self.panels, self.controls)
         self.wake.set()
 
 
@@ -71,24 +71,24 @@ def _Arena(
 def Page() -> None:
     """Show a game and its controls."""
     session = solara.use_memo(lambda: Session(start), [])
-    beats = solara.use_memo(Beats, [])
-    solara.use_effect(lambda: _run(session, beats), [])
+    signals = solara.use_memo(Signals, [])
+    solara.use_effect(lambda: _run(session, signals), [])
 
     def act(action: Callable[[], None]) -> None:
         action()
-        beats.changed()
+        signals.send_all()
 
     solara.Title("kswarms explore")
     solara.Style(_STYLE)
     with solara.Sidebar():
-        Controls(session, beats.controls, act)
+        Controls(session, signals.controls, act)
     with solara.v.Row(class_="kswarms-page"):
         with solara.v.Col(cols=12, md=7):
-            _Message(session, beats.controls)
-            _ArenaView(session, beats, act)
-            _Transport(session, beats.controls, act)
+            _Message(session, signals.controls)
+            _ArenaView(session, signals, act)
+            _Transport(session, signals.controls, act)
         with solara.v.Col(cols=12, md=5):
-            Panels(session, beats.panels, act)
+            Panels(session, signals.panels, act)
 
 
 @solara.component
@@ -98,29 +98,29 @@ def Layout(children: list[Any]) -> None:
     solara.AppLayout(children=children, sidebar_open=None)
 
 
-def _run(session: Session, beats: Beats) -> Callable[[], None]:
+def _run(session: Session, signals: Signals) -> Callable[[], None]:
     """Start the thread that plays the game; return a function that ends it."""
-    over = threading.Event()
-    thread = threading.Thread(target=play, args=(session, beats, over), daemon=True)
+    stop = threading.Event()
+    thread = threading.Thread(target=play, args=(session, signals, stop), daemon=True)
     thread.start()
 
     def end() -> None:
-        over.set()
-        beats.wake.set()
-        beats.drawn.set()
+        stop.set()
+        signals.wake.set()
+        signals.drawn.set()
         thread.join()
         session.close()
 
     return end
 
 
-def play(session: Session, beats: Beats, over: threading.Event) -> None:
-    """Play a game and update the page until `over` is set."""
+def play(session: Session, signals: Signals, stop: threading.Event) -> None:
+    """Play a game and update the page until `stop` is set."""
     last = shown = time.monotonic()
-    while not over.is_set():
+    while not stop.is_set():
         if not session.active:
-            beats.wake.wait()
-            beats.wake.clear()
+            signals.wake.wait()
+            signals.wake.clear()
             last = time.monotonic()
             continue
         now = time.monotonic()
@@ -128,41 +128,41 @@ def play(session: Session, beats: Beats, over: threading.Event) -> None:
         moved = session.tick(min(now - last, 0.25))
         last = now
         if moved:
-            beats.drawn.clear()
-            beats.beat(beats.frame)
+            signals.drawn.clear()
+            signals.send(signals.frame)
             if not session.active:
-                beats.changed()
+                signals.send_all()
             elif now - shown >= _PANELS_EVERY:
                 shown = now
-                beats.beat(beats.panels)
-            beats.drawn.wait(_DRAW_TIMEOUT)
+                signals.send(signals.panels)
+            signals.drawn.wait(_DRAW_TIMEOUT)
         time.sleep(max(0.0, FASTEST - (time.monotonic() - now)))
 
 
 @solara.component
-def _ArenaView(session: Session, beats: Beats, act: Act) -> None:
-    number = beats.frame.value
+def _ArenaView(session: Session, signals: Signals, act: Act) -> None:
+    number = signals.frame.value
     player = session.player
     scene = solara.use_memo(lambda: scene_of(player), [player])
     _Arena(
         scene=scene,
         frame=frame_of(player, number, session.selected, session.show_sectors, session.show_sensors),
-        event_drawn=lambda _: beats.drawn.set(),
+        event_drawn=lambda _: signals.drawn.set(),
         event_select=lambda robot: act(lambda: session.select(robot)),
     )
 
 
 @solara.component
-def _Message(session: Session, beat: solara.Reactive[int]) -> None:
-    beat.get()
+def _Message(session: Session, signal: solara.Reactive[int]) -> None:
+    signal.get()
     if session.error:
         solara.Error(session.error, icon=False, dense=True)
 
 
 @solara.component
-def _Transport(session: Session, beat: solara.Reactive[int], act: Act) -> None:
+def _Transport(session: Session, signal: solara.Reactive[int], act: Act) -> None:
     """Show the buttons below the arena."""
-    beat.get()
+    signal.get()
     player = session.player
     runs = session.playing and not player.ended
 

@@ -25,23 +25,23 @@ def _Chart(option: Json) -> None:
 
 
 @solara.component
-def Panels(session: Session, beat: solara.Reactive[int], act: Act) -> None:
+def Panels(session: Session, signal: solara.Reactive[int], act: Act) -> None:
     """Show the panels as tabs."""
     tab = solara.use_reactive(0)
     with solara.v.Tabs(v_model=tab.value, on_v_model=tab.set, grow=True):
         for name in ("Curves", "Robot", "Conflicts"):
             solara.v.Tab(children=[name])
     if tab.value == 0:
-        _Curves(session, beat)
+        _Curves(session, signal)
     elif tab.value == 1:
-        _Robot(session, beat, act)
+        _Robot(session, signal, act)
     else:
-        _Conflicts(session, beat, act)
+        _Conflicts(session, signal, act)
 
 
 @solara.component
-def _Curves(session: Session, beat: solara.Reactive[int]) -> None:
-    beat.get()
+def _Curves(session: Session, signal: solara.Reactive[int]) -> None:
+    signal.get()
     for heading, option in charts_of(session.player.history).items():
         solara.Text(heading, classes=["kswarms-heading"])
         _Chart(option=option)
@@ -57,8 +57,8 @@ def _robot_input(session: Session, act: Act) -> None:
 
 
 @solara.component
-def _Robot(session: Session, beat: solara.Reactive[int], act: Act) -> None:
-    beat.get()
+def _Robot(session: Session, signal: solara.Reactive[int], act: Act) -> None:
+    signal.get()
     _robot_input(session, act)
     view = session.player.view_robot(session.selected)
     if view is None:
@@ -102,8 +102,8 @@ def _arm_row(arm: Arm) -> list[str]:
 
 
 @solara.component
-def _Conflicts(session: Session, beat: solara.Reactive[int], act: Act) -> None:
-    beat.get()
+def _Conflicts(session: Session, signal: solara.Reactive[int], act: Act) -> None:
+    signal.get()
     of_all = solara.use_reactive(False)
     _robot_input(session, act)
     solara.Checkbox(label="Conflicts of all robots", value=of_all)

@@ -130,24 +130,24 @@ def test_a_running_game_is_shown_frame_by_frame_and_the_panels_less_often(
 ) -> None:
     monkeypatch.setattr(page, "_DRAW_TIMEOUT", 0.0)
     monkeypatch.setattr(page, "_PANELS_EVERY", 0.2)
-    session, beats, over = Session("fig-6.1c"), page.Beats(), threading.Event()
+    session, signals, over = Session("fig-6.1c"), page.Signals(), threading.Event()
     seen: list[float] = []
     panels: list[float] = []
-    beats.frame.subscribe(lambda _: seen.append(session.player.time))
-    beats.panels.subscribe(lambda _: panels.append(session.player.time))
+    signals.frame.subscribe(lambda _: seen.append(session.player.time))
+    signals.panels.subscribe(lambda _: panels.append(session.player.time))
     session.change(duration=8.0)
 
     def begin() -> None:
         session.toggle()
-        beats.wake.set()
+        signals.wake.set()
 
     def end(number: int) -> None:
         over.set()
-        beats.wake.set()
+        signals.wake.set()
 
-    beats.controls.subscribe(end)  # updated when the game has ended
+    signals.controls.subscribe(end)  # updated when the game has ended
     threading.Timer(0.05, begin).start()
-    page.play(session, beats, over)
+    page.play(session, signals, over)
     assert seen == sorted(seen)
     assert seen[-1] == 8.0
     assert 0 < len(panels) < len(seen)
