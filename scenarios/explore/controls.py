@@ -63,13 +63,13 @@ def Controls(session: Session, signal: solara.Reactive[int], act: Act) -> None:
         _swarm(session, k, act)
     swarms = len(form.swarms)
     with solara.Row(gap="6px"):
-        for label, number in (("Add a swarm", swarms + 1), (f"Remove S{swarms}", swarms - 1)):
+        for label, more in (("Add a swarm", 1), (f"Remove S{swarms}", -1)):
             solara.Button(
                 label,
                 small=True,
                 text=True,
-                disabled=number == 0,
-                on_click=lambda number=number: act(lambda: session.change_number_of_swarms(number)),
+                disabled=swarms + more == 0,
+                on_click=lambda more=more: act(lambda: session.add_swarms(more)),
             )
     _learning(session, change, act)
     with solara.Details("World"):

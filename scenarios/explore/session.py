@@ -107,10 +107,10 @@ class Session(Playback):
         form = self.form.replace_swarm(k, **changes)
         self._restart(_suit_n(form.replace(multiple_of=None)) if "share" in changes else form)
 
-    def change_number_of_swarms(self, number: int) -> None:
-        """Remove the last swarms or add swarms that avoid."""
-        kept = self.form.swarms[:number]
-        added = (SwarmRule(policy="avoid").model_dump(),) * (number - len(kept))
+    def add_swarms(self, more: int) -> None:
+        """Add swarms that avoid; remove the last swarms if `more` is negative."""
+        kept = self.form.swarms[: more if more < 0 else None]
+        added = (SwarmRule(policy="avoid").model_dump(),) * more
         self._restart(_suit_n(self.form.replace(swarms=kept + added, multiple_of=None)))
 
     def change_absent(self, text: str) -> None:

@@ -90,9 +90,9 @@ def test_shares_and_swarms_change_n_to_a_suitable_number(session: Session) -> No
     assert session.step_of_n() == 2
     session.change_swarm(0, share=2)
     assert (session.step_of_n(), session.form.n, session.error) == (3, 21, "")
-    session.change_number_of_swarms(3)
+    session.add_swarms(1)
     assert [swarm.size for swarm in session.player.game.swarms] == [10, 5, 5]
-    session.change_number_of_swarms(1)
+    session.add_swarms(-2)
     assert [swarm.size for swarm in session.player.game.swarms] == [20]
     session.change_swarm(0, share=0)
     assert session.error == "share=0: must be greater than or equal to 1"
