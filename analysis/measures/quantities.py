@@ -13,10 +13,9 @@ TIME_SHARES: Final = ("total", "inter-swarm", "intra-swarm")
 """Kinds of conflict with a share of a swarm's time."""
 
 # Scenarios for which the source shows other quantities than pucks.
-_OF_SUD: Final = {
-    *("fig-6.10a", "fig-6.10b", "fig-6.12", "fig-6.14"),
-    *("fig-7.4", "fig-7.6", "fig-7.8", "fig-7.10", "fig-7.11", "fig-7.19"),
-}
+_OF_SUD: Final = frozenset(
+    "fig-6.10a fig-6.10b fig-6.12 fig-6.14 fig-7.4 fig-7.6 fig-7.8 fig-7.10 fig-7.11 fig-7.19".split()
+)
 _OF_TIME: Final = {"fig-6.3"}
 
 

@@ -12,9 +12,16 @@ from kswarms.analysis.results.tables import check_columns
 _POINT: Final = ("run", "scenario", "condition", "n", "seed")
 _OF_GAME: Final = ("duration", "ended")
 _OF_SWARM: Final = [name for name in names("runs") if name not in {*_POINT, *_OF_GAME, "swarm"}]
+_AGENT_REPORTERS: Final = {"swarm", "state", "puck", "x", "y", "heading"}
 _NO_PARAMETERS: Final = {
-    *(*_POINT, *_OF_GAME, "RunId", "iteration", "Step", "AgentID", "time"),
-    *("swarm", "state", "puck", "x", "y", "heading"),  # agent reporters
+    "RunId",
+    "iteration",
+    "Step",
+    "AgentID",
+    "time",
+    *_POINT,
+    *_OF_GAME,
+    *_AGENT_REPORTERS,
 }
 
 

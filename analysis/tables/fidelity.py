@@ -83,10 +83,8 @@ def _compare(ours: pd.DataFrame, theirs: pd.DataFrame) -> dict[str, Any]:
 
 def argos_table(frame: pd.DataFrame) -> TextTable:
     """Return the rows of `against_argos` as text."""
-    header = [
-        *("scenario", "N", "swarm", "pucks", "ARGoS", "difference (95 % interval)", "relative", "fits"),
-        *("time in conflict", "ARGoS", "difference", "fits"),
-    ]
+    header = ["scenario", "N", "swarm", "pucks", "ARGoS", "difference (95 % interval)", "relative", "fits"]
+    header += ["time in conflict", "ARGoS", "difference", "fits"]
     rows = []
     for row in frame.to_dict("records"):
         relative = NONE if pd.isna(row["score_relative"]) else f"{100 * row['score_relative']:+.0f} %"

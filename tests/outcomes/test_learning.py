@@ -11,7 +11,7 @@ import pytest
 
 from kswarms.analysis.findings import FAILS, FINDINGS, HOLDS, Finding, Verdict, judge
 from kswarms.analysis.results.runs import Results
-from kswarms.analysis.tables.learned import learned
+from kswarms.analysis.tables.learned import learned_shares
 
 LEARNING: Final = (("fig-6.4a", "fig-6.4b"), ("fig-6.6", "fig-6.7", "fig-6.8"))
 """Scenarios of learners that learn about other swarms, and of learners about their own swarm."""
@@ -155,6 +155,6 @@ def test_few_learn_to_attack_at_low_density_and_most_at_high_density(
 ) -> None:
     policies = outcomes(sample, scenario).policies
     assert policies is not None
-    few, *_, many = learned(policies, [scenario])["measured"]
+    few, *_, many = learned_shares(policies, [scenario])["measured"]
     assert few < 10
     assert many > 60

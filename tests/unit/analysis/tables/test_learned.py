@@ -146,8 +146,10 @@ def test_columns_are_named_by_what_differs() -> None:
     made = policies({("fig-6.8", "", 1): {6: [0.5] * 3}, ("fig-6.8", "", 2): {6: [0.0] * 2}})
     table = learned_table(learned_shares(made, ["fig-6.8"]))
     assert [heading.splitlines()[0] for heading in table.header[1:]] == [
-        *("attack", "attack"),
-        *("flight within", "flight within"),
+        "attack",
+        "attack",
+        "flight within",
+        "flight within",
     ]
     assert "mean of 2 to 3 seeds" in table.caption
     assert "attack 50.0, flight within 0.0, all 2 cells 25.0" in table.caption
