@@ -13,9 +13,8 @@ TIME_SHARES: Final = ("total", "inter-swarm", "intra-swarm")
 """Kinds of conflict with a share of a swarm's time."""
 
 # Scenarios for which the source shows other quantities than pucks.
-_OF_SUD: Final = frozenset(
-    "fig-6.10a fig-6.10b fig-6.12 fig-6.14 fig-7.4 fig-7.6 fig-7.8 fig-7.10 fig-7.11 fig-7.19".split()
-)
+_OF_SUD_6: Final = {"fig-6.10a", "fig-6.10b", "fig-6.12", "fig-6.14"}
+_OF_SUD_7: Final = {"fig-7.4", "fig-7.6", "fig-7.8", "fig-7.10", "fig-7.11", "fig-7.19"}
 _OF_TIME: Final = {"fig-6.3"}
 
 
@@ -79,7 +78,7 @@ def short_policy(policy: str) -> str:
 
 def quantities(scenario: str) -> tuple[str, ...]:
     """Return the quantities in the figure of a scenario: `TIME_SHARES`, ``sud`` (of S2) or ``pucks``."""
-    if scenario in _OF_SUD:
+    if scenario in _OF_SUD_6 | _OF_SUD_7:
         return ("sud",)
     return TIME_SHARES if scenario in _OF_TIME else ("pucks",)
 

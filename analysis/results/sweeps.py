@@ -12,17 +12,9 @@ from kswarms.analysis.results.tables import check_columns
 _POINT: Final = ("run", "scenario", "condition", "n", "seed")
 _OF_GAME: Final = ("duration", "ended")
 _OF_SWARM: Final = [name for name in names("runs") if name not in {*_POINT, *_OF_GAME, "swarm"}]
+_MESA: Final = {"RunId", "iteration", "Step", "AgentID", "time"}
 _AGENT_REPORTERS: Final = {"swarm", "state", "puck", "x", "y", "heading"}
-_NO_PARAMETERS: Final = {
-    "RunId",
-    "iteration",
-    "Step",
-    "AgentID",
-    "time",
-    *_POINT,
-    *_OF_GAME,
-    *_AGENT_REPORTERS,
-}
+_NO_PARAMETERS: Final = {*_POINT, *_OF_GAME, *_MESA, *_AGENT_REPORTERS}
 
 
 class PlayedModel(Protocol):
