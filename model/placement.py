@@ -55,7 +55,7 @@ def start_poses(
     places = np.array(positions)
     if crowded:
         _part(places, limit, radius + clearance / 2)
-        if _nearest(places) < 2 * radius + clearance:
+        if pdist(places).min() < 2 * radius + clearance:
             raise InputError("n", n, f"robots of radius {radius} m find no place in a square of {2 * half} m")
     return places, headings
 
@@ -88,8 +88,3 @@ def _part(positions: Floats, limit: float, reach: float) -> None:
     pairs["first"], pairs["second"] = np.triu_indices(n, 1)
     reach += TOLERANCE
     relax(positions, reach, limit + reach, np.zeros(n, dtype=WORK), pairs, len(pairs))
-
-
-def _nearest(positions: Floats) -> float:
-    """Return the minimum distance between two places (m)."""
-    return float(pdist(positions).min())

@@ -23,6 +23,7 @@ Table = dict[str, list[Any]]
 _CONFLICTS, _ROBOTS, _TRAJECTORY = (names(table)[1:] for table in RECORDED_TABLES)  # without the run
 _OF_GAME: Final = ("swarm", "duration", "ended")
 """Columns of results that are not values of one swarm."""
+_POLICIES: Final = ("swarm", "opponent", "action", "share", "attack_share")
 _AGENT_REPORTERS: Final[dict[str, Callable[[Any], Any]]] = {
     "swarm": lambda robot: robot.swarm + 1,
     "state": lambda robot: robot.state,
@@ -193,23 +194,16 @@ def policy_rows(state: GameState) -> list[dict[str, Any]]:
     There is one row per learning swarm, swarm learned about and action.
     """
     actions = state.game.action_set
-    rows = []
+    rows: list[dict[str, Any]] = []
     for k, members in enumerate(state.members):
         of_robots = [best_actions(snapshot_of(robot.policy), actions) for robot in members]
         for opponent in sorted({m for best in of_robots for m in best}):
             learned = [best[opponent] for best in of_robots if opponent in best]
             shares = {a.name: sum(b.name == a.name for b in learned) / len(learned) for a in actions}
             attack_share = sum(action.direction == TOWARDS for action in learned) / len(learned)
-            rows += [
-                {
-                    "swarm": k + 1,
-                    "opponent": opponent + 1,
-                    "action": name,
-                    "share": share,
-                    "attack_share": attack_share,
-                }
-                for name, share in shares.items()
-            ]
+            for name, share in shares.items():
+                row = (k + 1, opponent + 1, name, share, attack_share)
+                rows.append(dict(zip(_POLICIES, row, strict=True)))
     return rows
 
 
