@@ -14,7 +14,7 @@ from kswarms.scenarios.runs.run import Run, code_version
 def play_through(
     executor: Executor, waiting: deque[Run], at_once: int, record: str
 ) -> Generator[tuple[Run, Outcome | Failure | None, float], None, None]:
-    """Play runs through an executor, at most `at_once` at a time; yield each with result and CPU time (s).
+    """Play runs through an executor, at most `at_once` at a time; yield run, result and CPU time (s).
 
     The result is None if the executor broke during the run. Runs not yet submitted then stay in `waiting`.
     """

@@ -38,7 +38,7 @@ COMMIT;
 
 
 def open_database(path: Path, new: bool) -> sqlite3.Connection:
-    """Open the file of a ledger, or create it if `new`; raise an `InputError` if its format is another."""
+    """Open the file of a ledger (if `new`, create it unless it exists) and check its format."""
     if not new and not path.is_file():
         raise InputError("results", str(path.parent), f"must be a directory with a {LEDGER_FILE} of kswarms")
     with os_errors(path):

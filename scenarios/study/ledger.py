@@ -149,7 +149,7 @@ class Ledger:
         return points
 
     def records(self, name: str) -> Iterator[tuple[str, bytes]]:
-        """Yield each finished run that has a recorded table, by its digest, and the packed table."""
+        """Yield the digest and a packed recorded table of each finished run with this table, by digest."""
         return self._query(
             "SELECT run, rows FROM records JOIN runs USING (run)"
             " WHERE name = ? AND status = 'done' ORDER BY run",
@@ -157,7 +157,7 @@ class Ledger:
         )
 
     def run(self, name: str) -> Run:
-        """Return the run with a digest; raise an `InputError` if it is missing or has become another game."""
+        """Return the run with a digest; raise an `InputError` if it is missing or would differ now."""
         query = "SELECT version, description, seed FROM games JOIN runs ON game = id WHERE run = ?"
         row = next(self._query(query, name), None)
         if row is None:

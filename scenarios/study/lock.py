@@ -15,7 +15,7 @@ from kswarms.agents.common.errors import InputError
 LOCK_FILE: Final = "lock"
 """Name of the locked file."""
 _TIMEOUT: Final = 0.5
-"""Lock timeout (s); `lock_holder` takes the lock for a moment."""
+"""Lock timeout (s), longer than `lock_holder` holds the lock."""
 
 
 @contextmanager

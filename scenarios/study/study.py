@@ -39,7 +39,7 @@ _ENTROPY: Final = "numpy PCG64(SeedSequence(seed, spawn_key=(robot, purpose))), 
 class Study:
     """A directory of results, open for playing; a context manager.
 
-    On exit, also after Ctrl-C, it writes the manifest and the files `tables`, with all finished runs.
+    On exit, also after Ctrl-C, it writes the manifest and the `tables` of all finished runs.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ class Study:
             scenarios={each.id: {"densities": each.densities, "seeds": each.seeds} for each in scenarios},
             first_seed=first_seed,
             records=list(records),
-            runs={"asked for": len(runs), "done before": len(runs) - len(waiting)},
+            runs={"requested": len(runs), "done before": len(runs) - len(waiting)},
         )
         return waiting
 

@@ -1,4 +1,4 @@
-"""A study of games of two seconds, and helpers to read it."""
+"""A study with games of two seconds, and functions that read its files."""
 
 import json
 from collections.abc import Callable
@@ -43,5 +43,5 @@ def uninterrupted_tables() -> list[bytes]:
 
 
 def read_sessions(directory: str = "results") -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = json.loads(Path(directory, "manifest.json").read_text())["sessions"]
-    return found
+    sessions: list[dict[str, Any]] = json.loads(Path(directory, "manifest.json").read_text())["sessions"]
+    return sessions

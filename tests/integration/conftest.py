@@ -1,4 +1,4 @@
-"""Fixtures of several files: an empty directory, a tiny study, games that fail, a page."""
+"""Fixtures of several test files: an empty directory, a tiny study, games that fail, a page."""
 
 import os
 import sys
@@ -22,13 +22,13 @@ def empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def tiny_file(empty_directory: Path) -> None:
-    """Write the tiny scenario to a file of a directory of its own."""
+    """Write the tiny scenario to ``tiny.toml`` in an empty directory."""
     (empty_directory / "tiny.toml").write_text(TINY.to_toml())
 
 
 @pytest.fixture
 def before_games(monkeypatch: pytest.MonkeyPatch) -> Callable[[Fault], None]:
-    """Return a function that has another called before each game."""
+    """Return a function that installs a fault, which is called before each game."""
     real = GameModel.play
 
     def install(fault: Fault) -> None:

@@ -95,9 +95,7 @@ def test_every_option_for_numbers_refuses_other_texts(capsys: pytest.CaptureFixt
 
 
 @pytest.mark.parametrize("title", ["$x^{ costs $", "漢字", "../../a/b", "<b>&amp;", "_x"])
-def test_any_title_is_drawn_and_reported(
-    title: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_any_title_is_drawn_and_reported(title: str, capsys: pytest.CaptureFixture[str]) -> None:
     Path("mine.toml").write_text(SCENARIO.replace("TITLE", title), encoding="utf-8")
     assert invoke(["run", "mine.toml", *QUICK]) == 0
     assert capsys.readouterr().err == ""

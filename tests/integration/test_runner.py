@@ -100,11 +100,11 @@ def test_a_model_is_freed_after_its_run(monkeypatch: pytest.MonkeyPatch) -> None
     models: list[weakref.ref[GameModel]] = []
     real = GameModel.play
 
-    def watched(self: GameModel) -> None:
+    def observed_play(self: GameModel) -> None:
         models.append(weakref.ref(self))
         real(self)
 
-    monkeypatch.setattr(GameModel, "play", watched)
+    monkeypatch.setattr(GameModel, "play", observed_play)
     registered = len(mesa.Agent._ids)
     for run in short_runs("fig-6.1a", densities=(6,), seeds=2):
         play(run)

@@ -1,4 +1,4 @@
-"""Studies: which runs are played, replayed and stored, and what status and manifest say about them."""
+"""Studies: runs that are played, replayed and stored; their status and manifest."""
 
 import json
 import os
@@ -32,15 +32,15 @@ def test_runs_that_two_figures_share_are_played_once_even_in_two_sessions(
 ) -> None:
     games = []
     before_games(lambda model: games.append(model.game.size))
-    tale = TINY.replace(id="tale", densities=(6, 8), seeds=3)
+    other = TINY.replace(id="other", densities=(6, 8), seeds=3)
     with Study(Path("results")) as study:
-        list(study.play(study.plan([TINY.replace(seeds=2), tale])))
-    assert len(games) == 2 * (2 + 3 + 3)  # two curves: N = 4 of the one, 6 of both, 8 of the other
+        list(study.play(study.plan([TINY.replace(seeds=2), other])))
+    assert len(games) == 2 * (2 + 3 + 3)  # two curves: N = 4 of TINY, 6 of both, 8 of the other
     with Study(Path("results")) as study:
-        assert len(study.plan([TINY.replace(seeds=2), tale, tale.replace(id="again")])) == 0
+        assert study.plan([TINY.replace(seeds=2), other, other.replace(id="third")]) == []
     rows = pq.read_table("results/runs.parquet").to_pylist()
-    again, told = ({row["run"] for row in rows if row["scenario"] == name} for name in ("again", "tale"))
-    assert again == told
+    runs = [{row["run"] for row in rows if row["scenario"] == name} for name in ("other", "third")]
+    assert runs[0] == runs[1]
 
 
 def test_a_run_without_a_requested_record_is_played_again(before_games: Callable[[Fault], None]) -> None:
@@ -83,8 +83,8 @@ def test_status_shows_failed_runs_and_the_commands_that_replay_them(
     before_games(fault)
     assert invoke(words) == 1
     printed = capsys.readouterr()
-    told = "kswarms: 2 of 8 runs failed; see `kswarms status 'my results'`"
-    assert printed.err.splitlines()[-1] == told
+    summary = "kswarms: 2 of 8 runs failed; see `kswarms status 'my results'`"
+    assert printed.err.splitlines()[-1] == summary
     assert printed.out.splitlines()[-1].startswith("next:   kswarms status 'my results'")
     assert pq.read_table("my results/runs.parquet").num_rows == 2 * 6
 
@@ -103,7 +103,7 @@ def test_status_shows_failed_runs_and_the_commands_that_replay_them(
 
     before_games(lambda model: None)
     assert invoke(words) == 0
-    assert read_sessions("my results")[-1]["runs"] == {"asked for": 8, "done before": 6}
+    assert read_sessions("my results")[-1]["runs"] == {"requested": 8, "done before": 6}
     capsys.readouterr()
     assert invoke(replay) == 0
     assert capsys.readouterr().out.splitlines()[-1] == "equal to the results in my results"
@@ -185,12 +185,12 @@ def test_the_memory_of_a_sweep_does_not_grow() -> None:
         return int(Path("/proc/self/statm").read_text().split()[1])
 
     with Study(Path("results")) as study:
-        taken = []
+        memory = []
         for k, _ in enumerate(study.play(study.plan([TINY.replace(seeds=200)]))):
             if k in (200, 799):
-                taken.append(pages())
-    grown = (taken[1] - taken[0]) * os.sysconf("SC_PAGE_SIZE") / 600
-    assert grown < 10_000, f"{grown} bytes a run"
+                memory.append(pages())
+    growth = (memory[1] - memory[0]) * os.sysconf("SC_PAGE_SIZE") / 600
+    assert growth < 10_000, f"{growth} bytes per run"
 
 
 def test_batch_run_gives_the_numbers_of_the_command_line() -> None:

@@ -25,7 +25,7 @@ from tests.helpers.tiny_study import RUN, TINY, Fault, read_sessions, read_table
 pytestmark = pytest.mark.usefixtures("tiny_file")
 
 NO_PROCESS = 99_999_999
-"""A number that no process has."""
+"""A process id that no process has."""
 
 
 def finished_runs() -> set[str]:

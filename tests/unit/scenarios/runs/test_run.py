@@ -18,9 +18,9 @@ GAME = CATALOGUE["fig-6.1c"].game("", 6)
 def test_a_scenario_expands_to_conditions_times_densities_times_seeds() -> None:
     runs = expand([CATALOGUE["fig-6.15"].replace(densities=(6, 10), seeds=3)], first_seed=5)
     assert len(runs) == len({run.digest for run in runs}) == 5 * 2 * 3
-    asked = {(condition, run.n, run.seed) for run in runs for _, condition in run.labels}
+    expanded = {(condition, run.n, run.seed) for run in runs for _, condition in run.labels}
     names = [condition.name for condition in CATALOGUE["fig-6.15"].conditions]
-    assert asked == {(name, n, seed) for name in names for n in (6, 10) for seed in (5, 6, 7)}
+    assert expanded == {(name, n, seed) for name in names for n in (6, 10) for seed in (5, 6, 7)}
 
 
 def test_two_figures_with_the_same_condition_share_its_runs() -> None:

@@ -29,7 +29,7 @@ def make_runs(*scenarios: str, densities: tuple[int, ...] = (6, 10), seeds: int 
 
 
 def make_row(table: str, **values: object) -> dict[str, object]:
-    """Return a row without the columns of its point, made up but for some values."""
+    """Return a row without the columns of its point: the given values, and one for each other column."""
     return {name: VALUES[KINDS[name]] for name in names(table)[5:]} | values
 
 
@@ -67,8 +67,8 @@ def write(
     with Ledger(directory / LEDGER_FILE, new=True) as ledger:
         ledger.plan({}, curves or {}, list(runs))
         for run in runs:
-            made = result(run)
-            ledger.add(run, made, 0.1, pack(made.records) if isinstance(made, Outcome) else {})
+            added = result(run)
+            ledger.add(run, added, 0.1, pack(added.records) if isinstance(added, Outcome) else {})
         return [path.name for path in export(ledger, directory)]
 
 
