@@ -66,7 +66,7 @@ draw_arena(model, axes)
 # %%
 model.play()
 samples = model.datacollector.get_model_vars_dataframe()
-samples.tail(3)
+samples[["time", "pucks_1", "sud_1", "share_a_1", "pucks_2", "sud_2", "share_a_2"]].tail(3)
 
 # %%
 figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.5), layout="constrained")
