@@ -217,7 +217,7 @@ def test_a_robot_between_two_is_not_frozen(
 @settings(deadline=None, max_examples=20)
 @given(st.floats(-0.3, 0.3), st.floats(-0.4, 0.4), frictions)
 def test_a_robot_between_a_wall_and_another_is_not_frozen(turn: float, place: float, friction: float) -> None:
-    # It drives along the wall, somewhat into it or into the robot that presses it there. With a friction of 1.5
+    # It drives along the wall, somewhat into it or into the robot that presses it there. With friction 1.5
     # it does stick if it drives far enough into the wedge between the wall and a robot ahead.
     assume(friction < 1 or turn - place < 0.5)
     positions = (1 - R, 0.0) - np.outer((0, 2.01 * R), unit(place))
