@@ -17,7 +17,6 @@ LAYOUTS: Final[tuple[Layout, ...]] = get_args(Layout)
 Place = tuple[float, float]
 
 
-
 class SwarmFields(Checked):
     """Fields of a swarm that do not depend on its size.
 
