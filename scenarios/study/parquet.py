@@ -73,7 +73,7 @@ def export(ledger: Ledger, directory: Path) -> list[Path]:
 
 
 def _grid(ledger: Ledger) -> tuple[list[Column], dict[Curve, dict[str, Any]]]:
-    """Return a column for each field of the grids, and the values by curve and column."""
+    """Return a column for each field of the grids (named ``grid.n`` if ``n`` is taken), and the values."""
     taken = {*names("runs"), *names("policies")}
     points = {
         curve: {f"grid.{field}" if field in taken else field: value for field, value in point.items()}
@@ -81,11 +81,11 @@ def _grid(ledger: Ledger) -> tuple[list[Column], dict[Curve, dict[str, Any]]]:
     }
     columns = []
     for name in dict.fromkeys(name for point in points.values() for name in point):
-        having = [point for point in points.values() if name in point]
-        types = {type(point[name]) for point in having}
+        with_field = [point for point in points.values() if name in point]
+        types = {type(point[name]) for point in with_field}
         kind = next((kind for kind, accepted in _GRID_KINDS.items() if types <= accepted), "text")
         if kind == "text":
-            for point in having:
+            for point in with_field:
                 point[name] = str(point[name])
         columns.append(Column(name, kind, "", "value in the grid of the scenario"))
     return columns, points
@@ -102,10 +102,10 @@ def _result_parts(
 ) -> Iterator[pa.Table]:
     no_grid: dict[str, Any] = dict.fromkeys(column for point in grid_points.values() for column in point)
     points = ledger.results("swarms" if name == "runs" else name)
-    while some := list(islice(points, _POINTS_PER_PART)):
+    while batch := list(islice(points, _POINTS_PER_PART)):
         rows = [
             no_grid | grid_points.get((point.scenario, point.condition), {}) | point._asdict() | row
-            for point, rows in some
+            for point, rows in batch
             for row in rows
         ]
         yield pa.table({column: [row[column] for row in rows] for column in schema.names}, schema=schema)
