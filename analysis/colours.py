@@ -3,9 +3,9 @@
 from typing import Final
 
 SWARM_COLOURS: Final = ("#00866a", "#d5450b", "#1f4fd8", "#cc79a7", "#56b4e9", "#e69f00")
-"""S1 is green, S2 red, S3 blue as in the source, in shades that colour-blind readers tell apart.
+"""S1 is green, S2 red, S3 blue as in the source, in shades that colour-blind readers can distinguish.
 
-The others are colours of Okabe and Ito.
+The others are from the palette of Okabe and Ito.
 """
 
 

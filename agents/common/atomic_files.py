@@ -6,6 +6,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
+from kswarms.agents.common.errors import InputError
+
 TEMPORARY: Final = ".unfinished-"
 """Prefix of the names of temporary files."""
 
@@ -27,6 +29,16 @@ def atomic_path(path: Path) -> Generator[Path, None, None]:
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def output_path(path: Path, field: str) -> Generator[Path, None, None]:
+    """Yield a temporary path, as `atomic_path` does; an `OSError` becomes an `InputError` about `field`."""
+    try:
+        with atomic_path(path) as temporary:
+            yield temporary
+    except OSError as error:
+        raise InputError(field, str(path), f"must be a writable file ({error.strerror or error})") from error
 
 
 def remove_temporary_files(directory: Path) -> None:

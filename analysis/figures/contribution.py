@@ -24,17 +24,8 @@ from kswarms.analysis.tables.contribution import estimate_text
 def contribution_figure(rows: pd.DataFrame, title: str = "") -> Figure:
     """Draw the true contribution of each robot over the reward that it computed.
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        As `of_question` returns them.
-    title : str
-        Title of the scenario.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        A panel for each of `MEASURES`: means of each robot with intervals; light points are single games.
+    `rows` come from `of_question`. A panel for each of `MEASURES` shows the mean and interval of each robot;
+    light points are single games.
     """
     first, seeds, measures = rows.iloc[0], rows["seed"].nunique(), measures_of(rows)
     absent = "from learning and game" if first["absent_from"] == "learning" else "from the measured game"
@@ -49,8 +40,8 @@ def contribution_figure(rows: pd.DataFrame, title: str = "") -> Figure:
                 means = robots[(robots["swarm"] == swarm) & (robots["robot"] >= 0)]
                 _draw_swarm(axes, rows[rows["swarm"] == swarm], means, measure, swarm_style(swarm))
             axes.set_title(_title(correlations[correlations["measure"] == measure]), fontsize="small")
-            axes.set_xlabel("reward that the robot computes in a game (s)")
-            axes.set_ylabel(f"change of its swarm's SUD by the robot ({MEASURES[measure]})")
+            change = f"change of its swarm's SUD by the robot ({MEASURES[measure]})"
+            axes.set(xlabel="reward that the robot computes in a game (s)", ylabel=change)
         bars = ", bars: their 95 % intervals" if seeds >= fewest_seeds() else ""
         note = f"means of {seeds} seeds{bars}, points: single games"
         legend_below(figure, note if seeds > 1 else "one seed")
@@ -75,29 +66,19 @@ def _draw_swarm(axes: Axes, games: pd.DataFrame, means: pd.DataFrame, measure: s
 
 
 def _title(correlations: pd.DataFrame) -> str:
-    lines = []
-    for found in correlations.to_dict("records"):
-        robots, games = (estimate_text(found, name) for name in ("robots", "games"))
-        lines.append(f"S{found['swarm']}: rank correlation of robots {robots}, in a game {games}")
-    return "\n".join(lines)
+    """Return a line for each swarm."""
+    return "\n".join(
+        f"S{row['swarm']}: rank correlation of robots {estimate_text(row, 'robots')}, "
+        f"in a game {estimate_text(row, 'games')}"
+        for row in correlations.to_dict("records")
+    )
 
 
 def write_contribution_figure(directory: Path, title: str = "", **question: object) -> Path:
-    """Write `figures/contribution-<id>.png` in a results directory.
+    """Write `figures/contribution-<id>.png` from `contribution.parquet` in a results directory.
 
-    Parameters
-    ----------
-    directory : Path
-        Directory with `contribution.parquet`.
-    title : str
-        Title of the scenario.
-    **question
-        As for `of_question`.
-
-    Raises
-    ------
-    InputError
-        The table cannot be read, or the figure cannot be written; then an existing file is unchanged.
+    `title` is the scenario's; `question` is as for `of_question`. `InputError` if the table cannot be read or
+    the figure cannot be written; then an existing file is unchanged.
     """
     rows = of_question(read_contributions(directory), **question)
     path = directory / "figures" / f"contribution-{rows['scenario'].iloc[0]}.png"

@@ -1,7 +1,7 @@
 """Figures of emerging policies: choices and Q over the time of learning, and final Q of each robot.
 
-Choices and Q are drawn from the conflicts of one game: rows of `conflicts.parquet` or of a DataCollector's
-table (`model.datacollector.get_table_dataframe("conflicts")`). Final Q is drawn from `robots.parquet`.
+Choices and Q come from the conflicts of one game: rows of `conflicts.parquet` or of a DataCollector's table
+(`model.datacollector.get_table_dataframe("conflicts")`). Final Q comes from rows of `robots.parquet`.
 """
 
 from collections.abc import Callable, Sequence
@@ -11,7 +11,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from kswarms.analysis.figures.style import CONDITION_COLOURS, CONDITION_MARKERS, legend_below, new_figure
+from kswarms.analysis.figures.style import CONDITION_COLOURS, condition_style, legend_below, new_figure
 from kswarms.analysis.measures.emergence import BANDIT, arm_values, choices, preferences
 
 
@@ -28,7 +28,7 @@ def choices_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
     Raises
     ------
     InputError
-        There is no learner.
+        No robot learned.
     """
     swarms, robots = choices(conflicts), choices(conflicts, by=["robot"])
     actions = sorted(set(swarms["action"]))
@@ -45,15 +45,7 @@ def choices_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
 def values_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
     """Draw Q of each action over the time of learning; thick lines are means of swarms, thin lines robots.
 
-    Parameters
-    ----------
-    conflicts, title
-        As for `choices_figure`.
-
-    Raises
-    ------
-    InputError
-        There is no learner.
+    Parameters and errors are those of `choices_figure`.
     """
     robots = arm_values(conflicts)
     means = robots.groupby([*BANDIT, "action", "time"])["q"].mean().reset_index()
@@ -77,9 +69,8 @@ def _draw_over_time(
         for _, of_robot in robots[robots["action"] == action].groupby("robot"):
             axes.plot(of_robot["time"], of_robot[quantity], color=colour, linewidth=0.6, alpha=0.35)
         of_swarm = swarm[swarm["action"] == action]
-        if of_swarm.empty:
-            continue
-        axes.plot(of_swarm["time"], of_swarm[quantity], color=colour, linewidth=2.5, label=action)
+        if not of_swarm.empty:
+            axes.plot(of_swarm["time"], of_swarm[quantity], color=colour, linewidth=2.5, label=action)
 
 
 def _panels(
@@ -97,8 +88,7 @@ def _panels(
         for axes, bandit in zip(panels, bandits, strict=True):
             axes.set_title(_name(bandit))
             draw(axes, bandit)
-            axes.set_xlabel(xlabel)
-            axes.set_ylabel(ylabel)
+            axes.set(xlabel=xlabel, ylabel=ylabel)
             axes.label_outer()
         legend_below(figure, legend)
     return figure
@@ -112,6 +102,9 @@ def _name(bandit: tuple[int, int]) -> str:
 def preferences_figure(robots: pd.DataFrame, title: str = "") -> Figure:
     """Draw Q of every arm at the end of a game, robot by robot.
 
+    Each pair of a learning swarm and an opponent has a panel. Robots are sorted by their best action, then by
+    its Q.
+
     Parameters
     ----------
     robots : pandas.DataFrame
@@ -119,16 +112,10 @@ def preferences_figure(robots: pd.DataFrame, title: str = "") -> Figure:
     title : str
         Heading.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-        A panel for each pair of a learning swarm and an opponent; robots are sorted by their best action,
-        then by its Q.
-
     Raises
     ------
     InputError
-        There is no learner.
+        No robot learned.
     """
     rows = preferences(robots)
     robot = [name for name in ("run", "robot") if name in rows]
@@ -139,25 +126,12 @@ def preferences_figure(robots: pd.DataFrame, title: str = "") -> Figure:
         best = of_bandit[of_bandit["learned"]].drop_duplicates(robot).sort_values(["action", "q"])
         place = pd.Series(range(len(best)), index=pd.MultiIndex.from_frame(best[robot]))
         for index, action in enumerate(actions):
-            arm = of_bandit[of_bandit["action"] == action]
-            axes.scatter(
-                place[pd.MultiIndex.from_frame(arm[robot])],
-                arm["q"],
-                color=CONDITION_COLOURS[index % len(CONDITION_COLOURS)],
-                marker=CONDITION_MARKERS[index % len(CONDITION_MARKERS)],
-                s=22,
-                label=action,
-            )
+            arm, style = of_bandit[of_bandit["action"] == action], condition_style(index)
+            across = place[pd.MultiIndex.from_frame(arm[robot])]
+            axes.scatter(across, arm["q"], color=style.colour, marker=style.marker, s=22, label=action)
         learned = best["action"].value_counts(normalize=True).sort_index()
         shares = ", ".join(f"{action} {share:.0%}" for action, share in learned.items())
-        axes.set_title(f"{_name(bandit)}; best: {shares}")
-        axes.set_xticks([])
+        axes.set(title=f"{_name(bandit)}; best: {shares}", xticks=[])
 
-    return _panels(
-        rows,
-        draw,
-        title,
-        "Q at the end (reward per second)",
-        xlabel="robots, sorted by best action and its Q",
-        legend="all arms of a robot are on one vertical line",
-    )
+    xlabel, legend = "robots, sorted by best action and its Q", "all arms of a robot are on one vertical line"
+    return _panels(rows, draw, title, "Q at the end (reward per second)", xlabel, legend)

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from kswarms.agents.common.atomic_files import atomic_path
+from kswarms.agents.common.atomic_files import output_path
 from kswarms.agents.common.errors import InputError
 
 DOTS_PER_INCH: Final = 150
@@ -16,15 +16,7 @@ FORMATS: Final = ("png", "svg")
 
 
 class EncodedFigure(NamedTuple):
-    """A figure in all formats.
-
-    Attributes
-    ----------
-    files : dict of str to bytes
-        The figure in each of `FORMATS`.
-    width, height : int
-        Size on a page (CSS pixels, 96 per inch).
-    """
+    """A figure in each of `FORMATS`; its size is in CSS pixels, 96 per inch."""
 
     files: dict[str, bytes]
     width: int
@@ -37,20 +29,7 @@ class EncodedFigure(NamedTuple):
 
 
 def encode(figure: Figure, kind: str) -> bytes:
-    """Return a figure in a format.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        Figure.
-    kind : {'png', 'svg'}
-        Format.
-
-    Raises
-    ------
-    InputError
-        The format is unknown.
-    """
+    """Return a figure in one of `FORMATS`; `InputError` for another format."""
     if kind not in FORMATS:
         raise InputError("format", kind, f"must be one of {', '.join(FORMATS)}")
     content = BytesIO()
@@ -79,9 +58,8 @@ def save(figure: Figure, path: Path) -> None:
     Parameters
     ----------
     figure : matplotlib.figure.Figure
-        Figure.
     path : Path
-        File; its suffix is the format. Missing folders are created.
+        The suffix is the format. Missing folders are created.
 
     Raises
     ------
@@ -92,16 +70,7 @@ def save(figure: Figure, path: Path) -> None:
 
 
 def write_file(path: Path, content: bytes, field: str) -> None:
-    """Write a file atomically; missing folders are created.
-
-    Raises
-    ------
-    InputError
-        The file cannot be written; the error names `field`.
-    """
-    try:
+    """Write a file atomically and create missing folders; `InputError` about `field` if that fails."""
+    with output_path(path, field) as temporary:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with atomic_path(path) as file:
-            file.write_bytes(content)
-    except OSError as error:
-        raise InputError(field, str(path), f"must be a writable file ({error.strerror or error})") from error
+        temporary.write_bytes(content)

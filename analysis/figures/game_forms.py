@@ -68,8 +68,7 @@ def draw_extensive_form(tree: nx.DiGraph) -> Figure:
     for x_of, player in enumerate((NATURE, OWN, MET)):
         axes.annotate(_MOVES[player], (x_of, 0.9), ha="center", va="bottom", fontsize=10)
     axes.annotate("payoffs (own, met)", (3.0, 0.9), ha="left", va="bottom", fontsize=10)
-    axes.set_xlim(-0.45, 3.75)
-    axes.set_ylim(min(height.values()) - 0.6, 1.7)
+    axes.set(xlim=(-0.45, 3.75), ylim=(min(height.values()) - 0.6, 1.7))
     return figure
 
 
@@ -110,23 +109,14 @@ def _draw_graph(axes: Axes, graph: nx.Graph) -> None:
     place = {swarm: (math.cos(angle), math.sin(angle)) for swarm, angle in angles.items()}
     shown = set()
     for k, m, form in graph.edges(data="form"):
-        zero_sum = form.is_zero_sum()
+        line, colour, kind = ("-", "0.2", "zero-sum") if form.is_zero_sum() else ("--", "0.55", "general-sum")
         x, y = zip(place[k], place[m], strict=True) if k != m else _loop(*place[k])
-        axes.plot(
-            x,
-            y,
-            "-" if zero_sum else "--",
-            color="0.2" if zero_sum else "0.55",
-            label=None if zero_sum in shown else ("zero-sum" if zero_sum else "general-sum"),
-            zorder=1,
-        )
-        shown.add(zero_sum)
+        axes.plot(x, y, line, color=colour, label=None if kind in shown else kind, zorder=1)
+        shown.add(kind)
     for k, swarm in enumerate(swarms):
-        colour = swarm_colour(k + 1)
-        axes.plot(*place[swarm], "o", color=colour, markersize=24, zorder=3)
-        axes.text(
-            *place[swarm], f"S{swarm}", ha="center", va="center", color="white", weight="bold", zorder=4
-        )
+        axes.plot(*place[swarm], "o", color=swarm_colour(k + 1), markersize=24, zorder=3)
+        name = axes.text(*place[swarm], f"S{swarm}", color="white", weight="bold", zorder=4)
+        name.set(ha="center", va="center")
 
 
 def _loop(x: float, y: float) -> tuple[list[float], list[float]]:

@@ -27,8 +27,8 @@ def heat_map_figure(conflicts: pd.DataFrame, title: str = "", places: Places | N
     title : str
         Heading.
     places : Places, optional
-        Arena, whose stations and bases are drawn into the maps. Without it, the maps are as large as needed
-        and at least 2 × 2 m.
+        Arena, such as `model.arena`; its stations and bases are drawn. By default, the maps cover all
+        conflicts, and at least 2 × 2 m.
 
     Returns
     -------
@@ -52,22 +52,14 @@ def heat_map_figure(conflicts: pd.DataFrame, title: str = "", places: Places | N
     norm = LogNorm(1 / games, max(conflict_density(conflicts, half).max(), 2 / games))
     colours = colormaps["magma"].with_extremes(bad="black")
     label = f"conflicts per game and {100 * CELL:.0f} × {100 * CELL:.0f} cm"
+    ticks = np.linspace(-half, half, 5)
     with new_figure(title, width=max(5.5, 4.0 * len(kinds)), height=4.4) as figure:
         panels = figure.subplots(1, len(kinds), squeeze=False, sharey=True)[0]
         for axes, (name, rows) in zip(panels, kinds.items(), strict=True):
             counts = conflict_density(rows, half) * (rows["run"].nunique() / games if "run" in rows else 1)
-            image = axes.imshow(
-                np.ma.masked_equal(counts, 0),
-                norm=norm,
-                cmap=colours,
-                origin="lower",
-                extent=(-half, half, -half, half),
-            )
-            axes.set_title(name)
-            axes.set_xticks(np.linspace(-half, half, 5))
-            axes.set_yticks(np.linspace(-half, half, 5))
-            axes.set_xlabel("x (m)")
-            axes.set_ylabel("y (m)")
+            cells, extent = np.ma.masked_equal(counts, 0), (-half, half, -half, half)
+            image = axes.imshow(cells, norm=norm, cmap=colours, origin="lower", extent=extent)
+            axes.set(title=name, xticks=ticks, yticks=ticks, xlabel="x (m)", ylabel="y (m)")
             axes.label_outer()
             axes.grid(False)
             if places is not None:
@@ -77,13 +69,16 @@ def heat_map_figure(conflicts: pd.DataFrame, title: str = "", places: Places | N
 
 
 def _draw_places(axes: Axes, places: Places) -> None:
-    for station in places.stations:
-        axes.add_patch(
-            Circle(tuple(station), places.station_radius, fill=False, color="white", linewidth=1.5)
-        )
-        axes.annotate("station", station, color="white", ha="center", va="center", fontsize="small")
-    for swarm, base in enumerate(places.bases, 1):
-        colour = swarm_colour(swarm)
-        axes.add_patch(Circle(tuple(base), places.base_radius, fill=False, color="white", linewidth=3))
-        axes.add_patch(Circle(tuple(base), places.base_radius, fill=False, color=colour, linewidth=1.5))
-        axes.annotate(f"S{swarm}", base, color="white", ha="center", va="center", fontsize="small")
+    def add_circle(x: float, y: float, radius: float, colour: str, width: float) -> None:
+        axes.add_patch(Circle((x, y), radius, fill=False, color=colour, linewidth=width))
+
+    def add_name(x: float, y: float, name: str) -> None:
+        axes.annotate(name, (x, y), color="white", ha="center", va="center", fontsize="small")
+
+    for x, y in places.stations:
+        add_circle(x, y, places.station_radius, "white", 1.5)
+        add_name(x, y, "station")
+    for swarm, (x, y) in enumerate(places.bases, 1):
+        add_circle(x, y, places.base_radius, "white", 3)
+        add_circle(x, y, places.base_radius, swarm_colour(swarm), 1.5)
+        add_name(x, y, f"S{swarm}")

@@ -25,14 +25,14 @@ def network_figure(network: nx.Graph, title: str = "") -> Figure:
     Parameters
     ----------
     network : networkx.Graph
-        Result of `meeting_network` with at least one edge.
+        Result of `kswarms.analysis.measures.networks.meeting_network` with at least one edge.
     title : str
         Heading.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Left: the longer two robots were in conflict, the wider and darker their edge; edges within a swarm
+        Left: edges are the wider and darker, the longer two robots were in conflict; edges within a swarm
         are grey, edges between swarms black. Right: the same times (s) with robots in the same order, on a
         logarithmic scale; pairs that never met are grey.
     """
@@ -77,8 +77,8 @@ def _label_swarms(axes: Axes, swarms: Sequence[int]) -> None:
     """Label the swarms along both sides of a matrix that is sorted by swarm, and draw lines between them."""
     names = sorted(set(swarms))
     middles = [np.flatnonzero(np.array(swarms) == name).mean() for name in names]
-    axes.set_xticks(middles, [f"S{name}" for name in names])
-    axes.set_yticks(middles, [f"S{name}" for name in names])
+    for set_ticks in (axes.set_xticks, axes.set_yticks):
+        set_ticks(middles, [f"S{name}" for name in names])
     axes.grid(False)
     for name in names[1:]:
         edge = swarms.index(name) - 0.5
@@ -104,8 +104,7 @@ def jams_figure(over_time: pd.DataFrame, title: str = "") -> Figure:
             axes.step(time, over_time[quantity], where="post", color=colour, linewidth=0.8, alpha=0.3)
             smooth = over_time[quantity].rolling(_WINDOW, center=True, min_periods=1).mean()
             axes.plot(time, smooth, color=colour, linewidth=2, label=label)
-        axes.set_xlabel("time (s)")
-        axes.set_ylabel("robots")
+        axes.set(xlabel="time (s)", ylabel="robots")
         axes.set_ylim(bottom=0)
         axes.margins(x=0)
         legend_below(figure, f"thin: each moment, thick: moving mean of {_WINDOW} moments")

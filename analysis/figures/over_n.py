@@ -93,7 +93,7 @@ def sud_over_n(
 ) -> Figure:
     """Draw the Swarm Utility Difference (Eq. 3.7) of one swarm over the number of robots.
 
-    Parameters and errors are those of `pucks_over_n`. The number of the swarm is 1 … K; the source shows S2.
+    Parameters and errors are those of `pucks_over_n`. The swarm is 1 to K; the source shows S2.
     """
     rows = of_scenario(runs, scenario)
     swarms = sorted(set(rows["swarm"]))
@@ -119,7 +119,7 @@ def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[st
     title : str
         Heading.
     conditions : sequence of str
-        Conditions of the scenario in the order of its other figure, so that both have the same colours.
+        Conditions in the order of another figure of the scenario, so that both have the same colours.
 
     Returns
     -------
@@ -140,12 +140,10 @@ def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[st
             if column["published"].notna().any():
                 published = LineStyle(style.colour, ":", "x")
                 draw_line(axes, column["n"], column["published"], published, f"{name}, published")
-        axes.set_ylim(-3, 103)
-        axes.set_xticks(sorted(set(cells["n"])))
-        axes.set_xlabel("number of robots in all, N")
         learned = set(cells["learned"])
         action = "to attack" if learned == {"attack"} else "flight within" if len(learned) == 1 else "it"
-        axes.set_ylabel(f"robots that learned {action} (%)")
+        axes.set(xlabel="number of robots in all, N", ylabel=f"robots that learned {action} (%)")
+        axes.set(xticks=sorted(set(cells["n"])), ylim=(-3, 103))
         legend_below(figure, "learned action; band: 95 % interval of the measured share")
     return figure
 
@@ -153,7 +151,7 @@ def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[st
 def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool = True) -> Figure:
     """Draw the quantity that the source shows of a scenario: pucks, SUD of S2 or shares of time.
 
-    Parameters, return value and errors are those of `pucks_over_n`.
+    Parameters and errors are those of `pucks_over_n`.
     """
     draw = {("sud",): sud_over_n, TIME_SHARES: time_shares}.get(quantities(scenario), pucks_over_n)
     return draw(runs, scenario, title, detail)
@@ -176,7 +174,7 @@ def write_figures(
     scenarios : sequence of str, optional
         Ids of the scenarios to draw, by default all; scenarios without runs are skipped.
     titles : mapping of str to str, optional
-        Titles of scenarios.
+        Titles of scenarios by id.
 
     Returns
     -------

@@ -21,10 +21,6 @@ def pucks_over_time(samples: pd.DataFrame, title: str = "") -> Figure:
     title : str
         Heading.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-
     Raises
     ------
     InputError
@@ -36,7 +32,7 @@ def pucks_over_time(samples: pd.DataFrame, title: str = "") -> Figure:
 def sud_over_time(samples: pd.DataFrame, title: str = "") -> Figure:
     """Draw the Swarm Utility Difference (Eq. 3.7) of each swarm over the time of a game.
 
-    Parameters, return value and errors are those of `pucks_over_time`.
+    Parameters and errors are those of `pucks_over_time`.
     """
     figure = _over_time(samples, "sud", "SUD (pucks)", title)
     figure.axes[0].axhline(0, color="0.4", linewidth=1)
@@ -46,7 +42,7 @@ def sud_over_time(samples: pd.DataFrame, title: str = "") -> Figure:
 def time_share_over_time(samples: pd.DataFrame, title: str = "") -> Figure:
     """Draw the share of time that each swarm has spent in conflict so far, T(a) / (T(a) + T(p)).
 
-    Parameters, return value and errors are those of `pucks_over_time`.
+    Parameters and errors are those of `pucks_over_time`.
     """
     figure = _over_time(samples, "share_a", "share of time in conflict so far", title)
     figure.axes[0].set_ylim(-0.02, 1.02)
@@ -63,7 +59,6 @@ def _over_time(samples: pd.DataFrame, quantity: str, label: str, title: str) -> 
         for swarm in swarms:
             draw_line(axes, samples["time"], samples[f"{quantity}_{swarm}"], swarm_style(swarm), f"S{swarm}")
             axes.lines[-1].set_markevery(max(1, len(samples) // 12))  # dense markers would hide the line
-        axes.set_xlabel("time (s)")
-        axes.set_ylabel(label)
+        axes.set(xlabel="time (s)", ylabel=label)
         legend_below(figure)
     return figure

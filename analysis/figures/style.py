@@ -31,8 +31,6 @@ _MAX_TICKS: Final = 16
 """With more densities than this, matplotlib chooses the ticks."""
 _MAX_GAP: Final = 4
 """Points of single seeds are at most a quarter of this from their density (robots)."""
-
-
 _LEGEND_LINE, _LETTER = 0.75, 0.08
 """Width of the line and of a letter in a legend (inches)."""
 
@@ -87,12 +85,8 @@ def draw_curves(axes: Axes, curves: Sequence[Curve], quantity: str, detail: bool
         if seeds > 1 and detail:
             # Many seeds share a value: the more seeds, the lighter the points.
             alpha = min(0.25, max(0.05, 5 / seeds))
-            axes.scatter(
-                rows["n"] + shift, rows[quantity], s=9, color=style.colour, alpha=alpha, linewidths=0
-            )
-            axes.fill_between(
-                points["n"], points["low"], points["high"], color=style.colour, alpha=0.2, linewidth=0
-            )
+            axes.scatter(rows["n"] + shift, rows[quantity], s=9, color=style.colour, alpha=alpha, lw=0)
+            axes.fill_between(points["n"], points["low"], points["high"], color=style.colour, alpha=0.2, lw=0)
             if len(points) == 1:  # the band has no width
                 axes.vlines(points["n"] + shift, points["low"], points["high"], color=style.colour)
         draw_line(axes, points["n"], points["mean"], style, curve.label)
@@ -142,7 +136,7 @@ def new_figure(title: str, width: float = 7.0, height: float = 4.9) -> Iterator[
 
 
 def legend_below(figure: Figure, title: str = "") -> None:
-    """Put one legend of all axes below them."""
+    """Put one legend of all axes below them; entries with the same label are shown once."""
     entries: dict[str, Any] = {}
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):

@@ -52,19 +52,8 @@ class Places(Protocol):
 class ArenaPainter:
     """Painter of one arena.
 
-    Parameters
-    ----------
-    places : Places
-        Arena, stations and bases.
-    robot_radius : float
-        Radius of the robots (m).
-    width : int
-        Width of the images (pixels), rounded down to an even number.
-
-    Attributes
-    ----------
-    width, height : int
-        Size of the images (pixels); both are even, as video formats require.
+    `robot_radius` is in m. The images have the size `width` × `height` (pixels); both are rounded to even
+    numbers, as video formats require.
     """
 
     def __init__(self, places: Places, robot_radius: float, width: int) -> None:
@@ -88,33 +77,19 @@ class ArenaPainter:
     ) -> Image.Image:
         """Return an image of an instant.
 
-        Parameters
-        ----------
-        title : str
-            Text above the arena, on the left.
-        pucks : sequence of int
-            Score of each swarm, written above the arena on the right.
-        positions : ndarray of float64, shape (n, 2)
-            (m)
-        heading : ndarray of float64, shape (n,)
-            (rad)
-        swarm : ndarray of int64, shape (n,)
-            Counted from 0.
-        in_action, carrying : ndarray of bool, shape (n,)
-            Robots in state A have a yellow ring, robots with a puck a black disc on white.
+        The title and the pucks of each swarm are above the arena. Robots in state A have a yellow ring;
+        robots with a puck have a black disc on white. For n robots, `positions` (m) has shape (n, 2);
+        `heading` (rad), `swarm` (counted from 0), `in_action` and `carrying` have shape (n,).
         """
         image = self._background.copy()
         pen = ImageDraw.Draw(image)
         radius = self._radius
         robots = zip(positions, heading, swarm, in_action, carrying, strict=True)
         for (x, y), angle, own, acts, carries in robots:
-            pen.ellipse(self._box(x, y, 0.97 * radius), fill=swarm_colour(own + 1))
+            body = self._box(x, y, 0.97 * radius)
+            pen.ellipse(body, fill=swarm_colour(own + 1))
             if acts:
-                pen.ellipse(
-                    self._box(x, y, 0.97 * radius),
-                    outline=_IN_ACTION,
-                    width=max(1, round(0.2 * radius * self._scale)),
-                )
+                pen.ellipse(body, outline=_IN_ACTION, width=max(1, round(0.2 * radius * self._scale)))
             dx, dy = math.cos(angle), math.sin(angle)
             ends = [self._pixel(x + r * radius * dx, y + r * radius * dy) for r in (0.3, 0.95)]
             pen.line([*ends[0], *ends[1]], fill=_WHITE, width=max(1, round(0.18 * radius * self._scale)))
@@ -142,8 +117,7 @@ class ArenaPainter:
         pen = ImageDraw.Draw(image)
         wall = 0.02 * places.half
         outside = places.half + wall
-        corners = [*self._pixel(-outside, outside), *self._pixel(outside, -outside)]
-        pen.rectangle(corners, outline=_WALL, width=round(wall * self._scale))
+        pen.rectangle(self._box(0.0, 0.0, outside), outline=_WALL, width=round(wall * self._scale))
         for x, y in places.stations:
             pen.ellipse(self._box(x, y, places.station_radius), fill=_STATION)
         font = ImageFont.load_default(0.1 * self._scale)
@@ -160,13 +134,11 @@ class ArenaPainter:
 
     def _box(self, x: float, y: float, radius: float) -> tuple[float, float, float, float]:
         """Return the corners of the square around a circle (pixels)."""
-        middle_x, middle_y = self._pixel(x, y)
-        reach = radius * self._scale
-        return middle_x - reach, middle_y - reach, middle_x + reach, middle_y + reach
+        return *self._pixel(x - radius, y + radius), *self._pixel(x + radius, y - radius)
 
 
 def _blend(one: str, other: str, share: float) -> tuple[int, ...]:
-    """Return the mixture of two colours; `share` is that of the other."""
+    """Return a mixture of two colours with this share of `other`."""
     pairs = zip(ImageColor.getrgb(one), ImageColor.getrgb(other), strict=True)
     return tuple(round((1 - share) * a + share * b) for a, b in pairs)
 

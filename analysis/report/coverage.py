@@ -10,19 +10,7 @@ from kswarms.analysis.text_tables import TextTable, span
 
 @dataclass(frozen=True)
 class PlannedScenario:
-    """The games of a scenario.
-
-    Attributes
-    ----------
-    title : str
-        Title.
-    conditions : tuple of str
-        Names of its conditions.
-    densities : tuple of int
-        Numbers of robots in all.
-    seeds : int
-        Games at each density of each condition.
-    """
+    """The games of a scenario: `seeds` games at each density (number of robots in all) of each condition."""
 
     title: str
     conditions: tuple[str, ...]
@@ -31,21 +19,14 @@ class PlannedScenario:
 
 
 def coverage(runs: pd.DataFrame, plan: Mapping[str, PlannedScenario]) -> pd.DataFrame:
-    """Compare the games in the results with a plan.
-
-    Parameters
-    ----------
-    runs : pandas.DataFrame
-        Rows of `runs.parquet`.
-    plan : mapping of str to PlannedScenario
-        Scenarios by id.
+    """Compare the games in the results with a plan, whose keys are ids of scenarios.
 
     Returns
     -------
     pandas.DataFrame
-        One row for each scenario, in the order of the plan: `scenario` (str); `games`, `planned` (int64), the
-        planned games that exist and their number, counted for each condition; `missing` (str), a description
-        of the missing games, empty if there are none. Games outside the plan do not count.
+        One row for each `scenario`, in the order of the plan: `planned` (int64), the number of games in the
+        plan; `games` (int64), how many of them exist; `missing` (str), a description of the others, empty if
+        there are none. Conditions with the same games count them separately.
     """
     points = runs[["scenario", "condition", "n", "seed"]].drop_duplicates()
     rows = []
@@ -82,7 +63,7 @@ def _absent(planned: Iterable[object], found: pd.Series) -> str:
 
 
 def coverage_table(frame: pd.DataFrame) -> TextTable:
-    """Return the result of `coverage` as a table of incomplete scenarios; the caption has the other ones."""
+    """Return a table of the partly played scenarios of `coverage`; its caption has the others."""
     absent = frame[frame["games"] == 0]["scenario"]
     partial = frame[(frame["games"] > 0) & (frame["missing"] != "")]
     complete = int((frame["missing"] == "").sum())

@@ -1,4 +1,4 @@
-"""Elements of the report's page, and the files that are written of them.
+"""Elements of the report's page, and their files.
 
 A report has chapters, chapters have parts, and parts have text, figures and tables. The page is one HTML file
 that needs no network: images and downloads are data URIs, and there is no script.
@@ -23,23 +23,13 @@ _MIME: Final = {"png": "image/png", "svg": "image/svg+xml"}
 
 @dataclass(frozen=True)
 class PageFigure:
-    """A figure on the page.
-
-    Attributes
-    ----------
-    name : str
-        Name of its files, without suffix.
-    image : EncodedFigure
-        The figure in all formats.
-    alt : str
-        Alternative text for readers who do not see it.
-    caption : str
-        Text below it.
-    """
+    """A figure on the page."""
 
     name: str
+    """Name of its files, without suffix."""
     image: EncodedFigure
     alt: str
+    """Alternative text for readers who cannot see the figure."""
     caption: str
 
     @property
@@ -50,39 +40,27 @@ class PageFigure:
 
     @property
     def files(self) -> dict[str, bytes]:
-        """Content of the figure's files by name: PNG and SVG."""
+        """Content of the PNG and SVG files by name."""
         return {f"{self.name}.{kind}": content for kind, content in self.image.files.items()}
 
 
 @dataclass(frozen=True)
 class PageTable:
-    """A table on the page, with downloads of its numbers (CSV) and its text (Markdown).
-
-    Attributes
-    ----------
-    name : str
-        Name of its files, without suffix.
-    title : str
-        Title.
-    table : TextTable
-        The table as shown.
-    frame : pandas.DataFrame
-        The numbers.
-    """
+    """A table on the page, with downloads of its numbers (CSV) and its text (Markdown)."""
 
     name: str
+    """Name of its files, without suffix."""
     title: str
     table: TextTable
+    """The table as shown."""
     frame: pd.DataFrame
+    """The numbers with all digits."""
 
     @property
     def files(self) -> dict[str, bytes]:
-        """Content of the table's files by name: CSV, Markdown and HTML."""
-        texts = {
-            "csv": self.frame.to_csv(index=False),
-            "md": self.table.to_markdown(),
-            "html": self.table.to_html(),
-        }
+        """Content of the CSV, Markdown and HTML files by name."""
+        csv, markdown, html = self.frame.to_csv(index=False), self.table.to_markdown(), self.table.to_html()
+        texts = {"csv": csv, "md": markdown, "html": html}
         return {f"{self.name}.{kind}": text.encode() for kind, text in texts.items()}
 
     @property
@@ -94,37 +72,28 @@ class PageTable:
 
 @dataclass
 class Part:
-    """A section of a chapter.
-
-    Attributes
-    ----------
-    id : str
-        Anchor.
-    title : str
-        Heading.
-    text : list of str
-        Paragraphs.
-    figures : list of PageFigure
-        Figures, side by side if the page is wide enough.
-    tables : list of PageTable
-        Tables, one below the other.
-    source : str
-        Preformatted text; empty for none.
-    """
+    """A section of a chapter: paragraphs, then figures, tables and preformatted text."""
 
     id: str
+    """Anchor in the page."""
     title: str
     text: list[str] = field(default_factory=list)
     figures: list[PageFigure] = field(default_factory=list)
     tables: list[PageTable] = field(default_factory=list)
     source: str = ""
 
+    @property
+    def files(self) -> dict[str, bytes]:
+        """Content of the files of its figures and tables by name."""
+        items: list[PageFigure | PageTable] = [*self.figures, *self.tables]
+        return {name: content for item in items for name, content in item.files.items()}
+
     def add_figure(self, name: str, figure: Figure, alt: str, caption: str) -> None:
-        """Add a figure; see `PageFigure`."""
+        """Encode a figure and add it."""
         self.figures.append(PageFigure(name, encode_all(figure), alt, caption))
 
     def add_table(self, name: str, title: str, table: TextTable, frame: pd.DataFrame) -> None:
-        """Add a table; see `PageTable`."""
+        """Add a table."""
         self.tables.append(PageTable(name, title, table, frame))
 
 
@@ -139,17 +108,7 @@ class Chapter:
 
 @dataclass(frozen=True)
 class Report:
-    """A report.
-
-    Attributes
-    ----------
-    title : str
-        Heading of the page.
-    summary : sequence of str
-        Paragraphs below the heading.
-    chapters : sequence of Chapter
-        Chapters; the table of contents lists them and their parts.
-    """
+    """A report: heading, paragraphs below it, and chapters, which the table of contents lists."""
 
     title: str
     summary: Sequence[str]
@@ -160,33 +119,20 @@ class Report:
         return TEMPLATES.get_template("report.html").render(report=self)
 
     def write_page(self, path: Path) -> None:
-        """Write the page to a file.
-
-        Raises
-        ------
-        InputError
-            The file cannot be written; then an existing file is unchanged.
-        """
+        """Write the page; `InputError` if that fails, then an existing file is unchanged."""
         write_file(path, self.to_html().encode(), "out")
 
     def write_files(self, folder: Path) -> int:
         """Write figures as PNG and SVG, tables as CSV, Markdown and HTML; return the number of files.
 
-        Raises
-        ------
-        InputError
-            The folder cannot be created, or a file cannot be written.
+        `InputError` if the folder cannot be created or a file cannot be written.
         """
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise InputError("files", str(folder), f"must be a folder ({error.strerror})") from error
-        contents: dict[str, bytes] = {}
-        for chapter in self.chapters:
-            for part in chapter.parts:
-                items: list[PageFigure | PageTable] = [*part.figures, *part.tables]
-                for item in items:
-                    contents |= item.files
+        parts = [part for chapter in self.chapters for part in chapter.parts]
+        contents = {name: content for part in parts for name, content in part.files.items()}
         for name, content in contents.items():
             write_file(folder / name, content, "files")
         return len(contents)

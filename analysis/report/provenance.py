@@ -1,4 +1,4 @@
-"""Provenance of results and report: files, manifest and versions of libraries."""
+"""Parts of the report about provenance: files, manifest and versions of libraries."""
 
 import hashlib
 import json
@@ -19,19 +19,13 @@ _LIBRARIES: Final = ("kswarms", "matplotlib", "networkx", "numpy", "pandas", "py
 
 
 def libraries_part() -> Part:
-    """Return the versions of Python and the libraries that make the report."""
+    """Show the versions of Python and the libraries that make the report."""
     made_with = ", ".join(f"{name} {version(name)}" for name in _LIBRARIES)
     return Part("made-with", "This report", [f"Made with {made_with}, Python {platform.python_version()}."])
 
 
 def directory_parts(directory: Path) -> list[Part]:
-    """Describe the files of a results directory and its manifest.
-
-    Raises
-    ------
-    InputError
-        A file or the manifest cannot be read.
-    """
+    """Show the files of a results directory and its manifest; `InputError` if one cannot be read."""
     described = [_describe(path) for path in sorted(directory.glob("*.parquet"))]
     rows = [[each["file"], str(each["rows"]), str(each["bytes"]), each["sha256"][:16]] for each in described]
     files = Part("files", "Files")
@@ -67,9 +61,8 @@ def _manifest_parts(content: dict[str, Any]) -> list[Part]:
     long = {key: value for key, value in content.items() if isinstance(value, dict | list) and value}
     lines = "\n".join(f"{key}: {value}" for key, value in content.items() if key not in long)
     parts = [Part("manifest", f"Manifest ({MANIFEST_FILE})", source=lines)]
-    return parts + [
-        Part(f"manifest-{key}", f"Manifest: {key}", source=_text(value)) for key, value in long.items()
-    ]
+    parts += [Part(f"manifest-{key}", f"Manifest: {key}", source=_text(value)) for key, value in long.items()]
+    return parts
 
 
 def _text(value: Any) -> str:

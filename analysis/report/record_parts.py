@@ -16,10 +16,10 @@ from kswarms.analysis.results.records import read_conflicts, read_robots, record
 from kswarms.analysis.text_tables import TextTable, number
 
 MAX_GAMES: Final = 4
-"""Maximum number of recorded games of a density that the report uses; more would show the same."""
+"""Maximum number of recorded games of a condition and density that the report uses."""
 
 PlacesOf = Callable[[str, str, int, int], Places | None]
-"""Returns the arena of a scenario, condition, number of robots and seed; None if it is unknown."""
+"""Returns the arena of a scenario, condition, number of robots and seed, or None if it is unknown."""
 
 _NETWORK_COLUMNS: Final = {
     "n": ("N", ".0f"),
@@ -65,7 +65,7 @@ class RecordedCondition:
 
     @property
     def densest(self) -> pd.DataFrame:
-        """The first games at the highest density."""
+        """The first `MAX_GAMES` games at the highest density."""
         dense: pd.DataFrame = self.games[self.games["n"] == self.games["n"].max()]
         return dense.head(MAX_GAMES)
 
@@ -95,13 +95,7 @@ def recorded_conditions(directory: Path, table: str, runs: pd.DataFrame) -> list
 def conflict_parts(
     directory: Path, condition: RecordedCondition, places_of: PlacesOf
 ) -> Iterator[tuple[str, Part]]:
-    """Show the recorded conflicts of a condition.
-
-    Yields
-    ------
-    (str, Part)
-        Chapter (``networks``, ``emergence`` or ``maps``) and part.
-    """
+    """Yield parts about recorded conflicts with their chapters: ``networks``, ``maps`` or ``emergence``."""
     first = condition.densest.iloc[0]
     conflicts = read_conflicts(directory, condition.densest["run"])
     measured = conflicts[conflicts["phase"] == "game"]
@@ -139,10 +133,8 @@ def _network_part(directory: Path, condition: RecordedCondition, game: pd.DataFr
             of_jams = jams(of_run)[["jams", "jammed", "largest"]].mean()
             rows.append({"n": n, "seed": seeds[run], **network, **of_jams})
     frame = pd.DataFrame(rows).sort_values(["n", "seed"])
-    cells = [
-        [number(row[name], form) for name, (_, form) in _NETWORK_COLUMNS.items()]
-        for row in frame.to_dict("records")
-    ]
+    forms = {name: form for name, (_, form) in _NETWORK_COLUMNS.items()}
+    cells = [[number(row[name], form) for name, form in forms.items()] for row in frame.to_dict("records")]
     table = TextTable([header for header, _ in _NETWORK_COLUMNS.values()], cells, _NETWORK_CAPTION)
     part.add_table(part.id, f"Networks of {condition.name}", table, frame)
     return part
@@ -187,7 +179,7 @@ def _emergence_part(condition: RecordedCondition, conflicts: pd.DataFrame, name:
 
 
 def robots_parts(directory: Path, condition: RecordedCondition) -> Iterator[tuple[str, Part]]:
-    """Yield the final Q of each robot of a condition and its chapter ``emergence``, if any robot learned."""
+    """Yield the part about the final Q of each robot and its chapter ``emergence``, if any robot learned."""
     robots = read_robots(directory, condition.densest["run"])
     if not robots["arms"].map(len).any():
         return

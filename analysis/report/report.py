@@ -42,7 +42,7 @@ _PREFIXES: Final = ("fig-6.", "fig-7.", ARGOS)
 """Chapters of scenarios, by the prefix of the scenario's id; all others belong to the chapter `other`."""
 
 SourceTables = Mapping[str, tuple[str, Sequence[str]]]
-"""Title and scenarios of each table of the source."""
+"""Title and scenarios of each table of the source, by id."""
 
 Step = Callable[[], Iterable[tuple[str, Part]]]
 """Makes parts and names the chapter of each."""
@@ -68,13 +68,13 @@ def build_report(
     plan : mapping of str to PlannedScenario, optional
         Scenarios by id, in their order in the report; other scenarios of the results follow.
     source_tables : mapping of str to (str, sequence of str), optional
-        Title and scenarios of each table of the source.
+        Title and scenarios of each table of the source, by id.
     findings : sequence of Finding
         Findings to judge.
     places_of : callable
-        Arenas, drawn into the heat maps.
+        Arena of a game, drawn into the heat maps; by default unknown.
     progress : callable
-        Wrapper of the steps, such as a progress bar.
+        Iterator over the steps, such as a progress bar.
 
     Returns
     -------

@@ -30,16 +30,8 @@ _SHOWN: Final = {
 def scenario_part(results: Results, scenario: str, title: str, missing: str, table: str) -> Part:
     """Show a scenario: its figure without and with intervals, its numbers, and the learned policies.
 
-    Parameters
-    ----------
-    results : Results
-        Results with runs of the scenario.
-    scenario, title : str
-        Id and title; the title may be empty.
-    missing : str
-        Description of the missing games; empty for none.
-    table : str
-        Id of the source's table of its learned policies; empty for none.
+    `missing` describes the missing games; `table` is the id of the source's table of the scenario's learned
+    policies. Both are empty for none.
     """
     part = Part(scenario, heading(scenario, title))
     if missing:
@@ -47,17 +39,12 @@ def scenario_part(results: Results, scenario: str, title: str, missing: str, tab
     shown = _SHOWN[quantities(scenario)]
     frame = scores.scores(results.runs, scenario)
     curves = ", ".join(dict.fromkeys(frame["curve"]))
-    alt = f"Line chart of the {shown} over the number of robots in all, for {curves}"
-    for name, detail, content in (
-        (f"{scenario}-source", False, "means only"),
-        (scenario, True, "means, 95 % intervals and single seeds"),
-    ):
-        part.add_figure(
-            name,
-            over_n.figure_of(results.runs, scenario, title, detail),
-            f"{alt}, {content}; the table of {scenario} has its numbers.",
-            f"{shown[0].upper()}{shown[1:]}: {content}.",
-        )
+    chart = f"Line chart of the {shown} over the number of robots in all, for {curves}"
+    for detail, content in ((False, "means only"), (True, "means, 95 % intervals and single seeds")):
+        name = scenario if detail else f"{scenario}-source"
+        figure = over_n.figure_of(results.runs, scenario, title, detail)
+        alt = f"{chart}, {content}; the table of {scenario} has its numbers."
+        part.add_figure(name, figure, alt, f"{shown[0].upper()}{shown[1:]}: {content}.")
     part.add_table(scenario, f"Numbers of {scenario}", scores.scores_table(frame), frame)
     if results.policies is not None and scenario in set(results.policies["scenario"]):
         _add_learned(part, results.runs, tables.learned_shares(results.policies, [scenario]), title, table)
@@ -121,15 +108,12 @@ def verdicts_part(verdicts: Sequence[Verdict]) -> Part:
     marks = {name: name.replace(" ", "-") for name in counts.index}
     marks |= {verdict.statement: "statement" for verdict in verdicts}
     marks |= {verdict.note: "note" for verdict in verdicts if verdict.note}
-    part = Part(
-        "verdicts",
-        "Findings",
-        [
-            f"{len(verdicts)} findings: {', '.join(f'{k} {name}' for name, k in counts.items())}.",
-            "A finding holds or fails if the interval of its effect lies on one side of the bound; it is "
-            "undecided if the interval contains the bound, or if seeds or densities are missing.",
-        ],
-    )
+    text = [
+        f"{len(verdicts)} findings: {', '.join(f'{k} {name}' for name, k in counts.items())}.",
+        "A finding holds or fails if the interval of its effect lies on one side of the bound; it is "
+        "undecided if the interval contains the bound, or if seeds or densities are missing.",
+    ]
+    part = Part("verdicts", "Findings", text)
     table = TextTable(header, cells.astype(str).to_numpy().tolist(), "", marks)
     part.add_table("findings", "Findings and their verdicts", table, frame)
     return part
