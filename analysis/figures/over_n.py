@@ -23,6 +23,7 @@ from kswarms.analysis.figures.style import (
     scale_from_zero,
     seeds_legend,
 )
+from kswarms.analysis.measures.learned import named_curves
 from kswarms.analysis.measures.quantities import (
     TIME_SHARES,
     of_scenario,
@@ -32,7 +33,6 @@ from kswarms.analysis.measures.quantities import (
 )
 from kswarms.analysis.results.runs import Results, read_results
 from kswarms.analysis.results.sweeps import Sweep
-from kswarms.analysis.tables.learned import named_columns
 
 
 def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool = True) -> Figure:
@@ -115,7 +115,7 @@ def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[st
     Parameters
     ----------
     cells : pandas.DataFrame
-        Result of `kswarms.analysis.tables.learned.learned_shares`.
+        Result of `kswarms.analysis.measures.learned.learned_shares`.
     title : str
         Heading.
     conditions : sequence of str
@@ -130,16 +130,16 @@ def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[st
     with new_figure(title) as figure:
         axes = figure.subplots()
         several_opponents = cells.groupby("condition")["opponent"].nunique().max() > 1
-        for index, (name, column) in enumerate(named_columns(cells)):
+        for index, (name, curve) in enumerate(named_curves(cells)):
             style = condition_style(index)
             if len(conditions) > 1:
-                condition, opponent = column["condition"].iloc[0], column["opponent"].iloc[0]
+                condition, opponent = curve["condition"].iloc[0], curve["opponent"].iloc[0]
                 style = condition_style(conditions.index(condition), opponent if several_opponents else None)
-            axes.fill_between(column["n"], column["low"], column["high"], color=style.colour, alpha=0.2, lw=0)
-            draw_line(axes, column["n"], column["measured"], style, name)
-            if column["published"].notna().any():
+            axes.fill_between(curve["n"], curve["low"], curve["high"], color=style.colour, alpha=0.2, lw=0)
+            draw_line(axes, curve["n"], curve["measured"], style, name)
+            if curve["published"].notna().any():
                 published = LineStyle(style.colour, ":", "x")
-                draw_line(axes, column["n"], column["published"], published, f"{name}, published")
+                draw_line(axes, curve["n"], curve["published"], published, f"{name}, published")
         learned = set(cells["learned"])
         action = "to attack" if learned == {"attack"} else "flight within" if len(learned) == 1 else "it"
         axes.set(xlabel="number of robots in all, N", ylabel=f"robots that learned {action} (%)")

@@ -10,11 +10,12 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.figures import over_n
 from kswarms.analysis.figures.style import heading
 from kswarms.analysis.findings import Verdict
+from kswarms.analysis.measures.learned import learned_shares
 from kswarms.analysis.measures.quantities import TIME_SHARES, quantities
 from kswarms.analysis.report.page import Part
 from kswarms.analysis.results.runs import Results
 from kswarms.analysis.tables import fidelity, scores
-from kswarms.analysis.tables import learned as tables
+from kswarms.analysis.tables.learned import learned_table
 from kswarms.analysis.text_tables import NONE, TextTable
 
 ARGOS: Final = "argos-"
@@ -47,7 +48,7 @@ def scenario_part(results: Results, scenario: str, title: str, missing: str, tab
         part.add_figure(name, figure, alt, f"{shown[0].upper()}{shown[1:]}: {content}.")
     part.add_table(scenario, f"Numbers of {scenario}", scores.scores_table(frame), frame)
     if results.policies is not None and scenario in set(results.policies["scenario"]):
-        _add_learned(part, results.runs, tables.learned_shares(results.policies, [scenario]), title, table)
+        _add_learned(part, results.runs, learned_shares(results.policies, [scenario]), title, table)
     return part
 
 
@@ -65,17 +66,17 @@ def _add_learned(part: Part, runs: pd.DataFrame, cells: pd.DataFrame, title: str
         f"Learned policies{published}; {name} has the numbers.",
     )
     if not table:
-        part.add_table(name, f"Learned in {scenario}", tables.learned_table(cells), cells)
+        part.add_table(name, f"Learned in {scenario}", learned_table(cells), cells)
 
 
 def table_part(policies: pd.DataFrame, table: str, title: str, scenarios: Sequence[str]) -> Part:
     """Show a table of the source: measured numbers, and published ones if they are available."""
-    cells = tables.learned_shares(policies, scenarios)
+    cells = learned_shares(policies, scenarios)
     part = Part(table, f"{table}: {title}")
     absent = [name for name in scenarios if name not in set(cells["scenario"])]
     if absent:
         part.text.append(f"Missing: {', '.join(absent)}; the numbers are of {cells['scenario'].iloc[0]}.")
-    part.add_table(table, title, tables.learned_table(cells), cells)
+    part.add_table(table, title, learned_table(cells), cells)
     return part
 
 

@@ -150,8 +150,9 @@ def _warn(message: str) -> None:
 
 
 def _print_table(table_id: str, out: Path) -> None:
+    from kswarms.analysis.measures.learned import learned_shares
     from kswarms.analysis.results.runs import read_policies
-    from kswarms.analysis.tables.learned import learned_shares, learned_table
+    from kswarms.analysis.tables.learned import learned_table
 
     title, scenarios = TABLES[table_id]
     text = learned_table(learned_shares(read_policies(out), scenarios))

@@ -10,8 +10,8 @@ from typing import Any, Final, NamedTuple
 import pytest
 
 from kswarms.analysis.findings import FAILS, FINDINGS, HOLDS, Finding, Verdict, judge
+from kswarms.analysis.measures.learned import learned_shares
 from kswarms.analysis.results.runs import Results
-from kswarms.analysis.tables.learned import learned_shares
 
 LEARNING: Final = (("fig-6.4a", "fig-6.4b"), ("fig-6.6", "fig-6.7", "fig-6.8"))
 """Scenarios of learners that learn about other swarms, and of learners about their own swarm."""

@@ -7,9 +7,10 @@ import pandas as pd
 import pytest
 
 from kswarms.agents.common.errors import InputError
+from kswarms.analysis.measures.learned import learned_shares, mean_absolute_error
 from kswarms.analysis.results.published import learned_percentages
 from kswarms.analysis.statistics.intervals import bootstrap_interval
-from kswarms.analysis.tables.learned import learned_shares, learned_table, mean_absolute_error
+from kswarms.analysis.tables.learned import learned_table
 
 Column = tuple[str, str, int]  # scenario, condition, opponent of S2
 

@@ -1,0 +1,74 @@
+"""Learned policies: shares of robots, with the published numbers, from the rows of `policies.parquet`.
+
+A cell is the percentage of a swarm's robots that learned to attack another swarm, or to flee within their
+own: the mean over the seeds, with its 95 % interval.
+"""
+
+from collections.abc import Sequence
+
+import pandas as pd
+
+from kswarms.agents.common.errors import InputError
+from kswarms.analysis.results.published import learned_percentages
+from kswarms.analysis.statistics.means import with_intervals
+
+_CURVE = ["scenario", "condition", "swarm", "opponent"]
+_CELL = [*_CURVE, "n"]
+
+
+def learned_shares(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataFrame:
+    """Return the percentage of robots that learned to attack others or to flee within, by curve and density.
+
+    `policies` are rows of `policies.parquet`. Scenarios without learners are left out; one must have some.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row for each `scenario`, `condition` (str), `swarm`, `opponent`, `n` (int64), in the order of
+        `scenarios`, then sorted, with
+
+        * `learned` (str): ``attack`` (another swarm) or ``flight within`` (the own swarm);
+        * `seeds` (int64): number of games;
+        * `measured` (float64, %): mean over the seeds;
+        * `low`, `high` (float64, %): its 95 % interval, NaN for fewer than six seeds;
+        * `published` (float64, %): the source's number, NaN if there is none;
+        * `error` (float64, percentage points): measured − published.
+    """
+    rows = policies[policies["scenario"].isin(scenarios)]
+    if rows.empty:
+        known = ", ".join(sorted(set(policies["scenario"])))
+        raise InputError("scenarios", list(scenarios), f"must include one with learners: {known}")
+    # The row of each action has the share of attack.
+    rows = rows.drop_duplicates([*_CELL, "seed"])
+    within = rows["opponent"] == rows["swarm"]
+    rows = rows.assign(
+        learned=within.map({True: "flight within", False: "attack"}),
+        percent=100 * rows["attack_share"].where(~within, 1 - rows["attack_share"]),
+    )
+    cells = with_intervals(rows, [*_CELL, "learned"], "percent").rename(columns={"mean": "measured"})
+    cells = cells.merge(learned_percentages(), how="left", on=["scenario", "learned", "n"])
+    cells["error"] = cells["measured"] - cells["published"]
+    order = {scenario: index for index, scenario in enumerate(scenarios)}
+    cells = cells.sort_values(
+        _CELL, key=lambda values: values.map(order) if values.name == "scenario" else values
+    ).reset_index(drop=True)
+    return cells[[*_CELL, "learned", "seeds", "measured", "low", "high", "published", "error"]]
+
+
+def mean_absolute_error(cells: pd.DataFrame) -> float:
+    """Return the mean of |measured − published| over the published cells, NaN if there is none."""
+    return float(cells["error"].abs().mean())
+
+
+def named_curves(cells: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    """Return each curve with its name: scenario, condition and action, as far as these differ."""
+    differing = [part for part in ("scenario", "condition", "learned") if cells[part].nunique() > 1]
+    opponents = cells.groupby(["scenario", "condition", "swarm", "learned"])["opponent"].nunique()
+    curves = []
+    for _, curve in cells.groupby(_CURVE, sort=False):
+        first = curve.iloc[0]
+        words = [str(first[part]) for part in differing or ["learned"]]
+        if opponents.max() > 1:
+            words.append(f"S{first['opponent']}")
+        curves.append((", ".join(words), curve))
+    return curves
