@@ -28,17 +28,7 @@ class Purpose(IntEnum):
 
 
 def stream(seed: int, robot: int, purpose: Purpose) -> Generator:
-    """Return a new generator of a stream.
-
-    Parameters
-    ----------
-    seed : int
-        Seed of the run, ≥ 0.
-    robot : int
-        Number of the robot in its game, or `ENVIRONMENT`.
-    purpose : Purpose
-        Purpose of the draws.
-    """
+    """Return a new generator of a stream; `robot` is its number in the game, or `ENVIRONMENT`."""
     return Generator(PCG64(SeedSequence(seed, spawn_key=(robot, int(purpose)))))
 
 

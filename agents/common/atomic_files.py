@@ -16,12 +16,8 @@ TEMPORARY: Final = ".unfinished-"
 def atomic_path(path: Path) -> Generator[Path, None, None]:
     """Yield a temporary path; on success it replaces `path`.
 
-    The temporary file is in the same directory and has the same suffix. Each process has its own.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written; then `path` is unchanged.
+    The temporary file is in the same directory and has the same suffix. Each process has its own. After an
+    error, `path` is unchanged.
     """
     temporary = path.with_name(f"{TEMPORARY}{os.getpid()}-{path.name}")
     try:
@@ -42,13 +38,7 @@ def output_path(path: Path, field: str) -> Generator[Path, None, None]:
 
 
 def remove_temporary_files(directory: Path) -> None:
-    """Remove temporary files of killed processes from a directory; files of running processes stay.
-
-    Raises
-    ------
-    OSError
-        If a file cannot be removed.
-    """
+    """Remove temporary files of killed processes from a directory; files of running processes stay."""
     for temporary in directory.glob(f"{TEMPORARY}*-*"):
         process = temporary.name.removeprefix(TEMPORARY).partition("-")[0]
         if process.isdecimal() and not _is_running(int(process)):

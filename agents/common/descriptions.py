@@ -14,13 +14,7 @@ def _is_number(annotation: Any) -> bool:
 
 
 class Checked(BaseModel):
-    """Frozen data; unknown fields, NaN and infinities are refused.
-
-    Raises
-    ------
-    InputError
-        If a field is unknown, missing, of the wrong type or out of range.
-    """
+    """Frozen data. An invalid, unknown or missing field, NaN or infinity raises an `InputError`."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 

@@ -35,12 +35,8 @@ def setting(
 
 def settings() -> list[Setting]:
     """Return settings in games of two and three swarms, with two and four actions."""
-    return [
-        setting(swarm, swarms, actions)
-        for swarms in (2, 3)
-        for swarm in range(swarms)
-        for actions in (TWO, FOUR)
-    ]
+    robots = [(swarm, swarms) for swarms in (2, 3) for swarm in range(swarms)]
+    return [setting(*robot, actions) for robot in robots for actions in (TWO, FOUR)]
 
 
 def play_conflicts(

@@ -16,13 +16,7 @@ from kswarms.agents.user_code.loading import reference_to, user_errors
 
 
 def try_policy(spec: PolicySpec, setting: Setting) -> None:
-    """Build a policy and exercise its user-defined parts once, so that errors surface before the game.
-
-    Raises
-    ------
-    InputError
-        If the policy cannot be built, or user code raises or returns a value that a game cannot use.
-    """
+    """Build a policy and exercise its user-defined parts once, so that errors surface before the game."""
     policy = spec.build(setting)
     if isinstance(policy, Learner):
         reward, rule, arms = policy.reward, policy.rule, len(setting.actions)

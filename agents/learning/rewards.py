@@ -58,18 +58,10 @@ class Reward(Checked, ABC):
 
 
 class WLU(Reward):
-    """Wonderful Life Utility: R = (3 − b)/2 · T(p) + (n'/8) · σ · Δ · T(a) (Eqs. 5.4, 6.2, 7.2).
+    """Wonderful Life Utility: R = (3 − b)/2 · T(p) + (n'/8) · σ · Δ · T(a) (Eqs. 5.4, 6.2, 7.2)."""
 
-    Attributes
-    ----------
-    delta : float, or dict of int to float
-        Δ for all opponents, or by swarm-ID (default 0.125).
-    b : float, or dict of int to float
-        Advantage β_m/β_i of the opponents, for all or by swarm-ID (default 1).
-    """
-
-    delta: _Deltas = 0.125
-    b: _Ratios = 1.0
+    delta: _Deltas = 0.125  # Δ for all opponents, or by swarm-ID with 0.125 for others
+    b: _Ratios = 1.0  # advantage β_m/β_i of all opponents, or by swarm-ID with 1 for others
 
     def opponents(self) -> frozenset[int]:
         """Return the swarm-IDs with their own Δ or b."""
@@ -84,18 +76,10 @@ class WLU(Reward):
 
 
 class IndividualUtility(Reward):
-    """The robot's own utility: r = w · T(p) − w · Δ · T(a), w = n'/8 (Eq. 6.3).
-
-    Attributes
-    ----------
-    delta : float
-        Δ.
-    half : bool
-        Whether w is the constant ½ instead.
-    """
+    """The robot's own utility: r = w · T(p) − w · Δ · T(a), w = n'/8 (Eq. 6.3)."""
 
     delta: _Delta = 0.125
-    half: bool = False
+    half: bool = False  # whether w is the constant ½ instead
 
     def of(self, t_a: float, t_p: float, n_active: int, direction: int, inter: bool, opponent: int) -> float:
         """Return r (s)."""
@@ -104,15 +88,9 @@ class IndividualUtility(Reward):
 
 
 class SingleSwarmWLU(Reward):
-    """WLU in a game of one swarm: R = (n'/8) · (T(p) − κ T(a)) (section 6.3.5).
+    """WLU in a game of one swarm: R = (n'/8) · (T(p) − κ T(a)) (section 6.3.5)."""
 
-    Attributes
-    ----------
-    kappa : float
-        κ = (α_i + ᾱ_k + β)/β; 3 for α = β.
-    """
-
-    kappa: float = Field(3.0, ge=0)
+    kappa: float = Field(3.0, ge=0)  # κ = (α_i + ᾱ_k + β)/β; 3 for α = β
 
     def of(self, t_a: float, t_p: float, n_active: int, direction: int, inter: bool, opponent: int) -> float:
         """Return R (s)."""
@@ -131,10 +109,5 @@ def make_reward(reward: str | Reward) -> Reward:
     """Return a reward, built from its text if one is given.
 
     A text is the name of one of `REWARDS` or a user-defined subclass of `Reward`, with arguments.
-
-    Raises
-    ------
-    InputError
-        If there is no such reward, or an argument is not allowed.
     """
     return reward if isinstance(reward, Reward) else build("reward", reward, REWARDS, Reward)

@@ -40,15 +40,9 @@ class Rule(Checked, ABC):
 
 
 class UCB(Rule):
-    """Upper confidence bound: argmax Q(a) + sqrt(γ ln N / N(a)) (Eq. 4.16).
+    """Upper confidence bound: argmax Q(a) + sqrt(γ ln N / N(a)) (Eq. 4.16)."""
 
-    Attributes
-    ----------
-    gamma : float
-        γ, the weight of exploration.
-    """
-
-    gamma: float = Field(0.1211, ge=0)
+    gamma: float = Field(0.1211, ge=0)  # γ, the weight of exploration
 
     def bounds(self, bandit: Bandit) -> list[float]:
         """Return Q(a) + sqrt(γ ln N / N(a)) of each arm, all of which must have been tried."""
@@ -67,14 +61,9 @@ class DiscountedUCB(UCB):
     """UCB on discounted sums (Garivier & Moulines 2008).
 
     Q, N(a) and N are discounted: the bonus is sqrt(γ ln n_λ / N_λ(a)), n_λ = Σ_a N_λ(a).
-
-    Attributes
-    ----------
-    discount : float
-        λ, the discount factor at each conflict of the bandit.
     """
 
-    discount: float = Field(0.99, gt=0, le=1)
+    discount: float = Field(0.99, gt=0, le=1)  # λ, the discount factor at each conflict of the bandit
 
     @property
     def factor(self) -> float:
@@ -91,15 +80,9 @@ class Greedy(Rule):
 
 
 class PeriodicRandom(Greedy):
-    """Greedy, except that every `every`-th choice is random.
+    """Greedy, except that every `every`-th choice is random."""
 
-    Attributes
-    ----------
-    every : int
-        Period of the uniformly random choices, counted for each bandit.
-    """
-
-    every: int = Field(5, ge=1)
+    every: int = Field(5, ge=1)  # period of the uniformly random choices, counted for each bandit
 
     def prefer(self, bandit: Bandit, draws: Generator) -> int:
         """Return a random arm if one is due, else the arm with the greatest Q."""
@@ -134,11 +117,6 @@ def make_rule(rule: str | Rule) -> Rule:
     """Return a selection rule, built from its text if one is given.
 
     A text is the name of one of `RULES` or a user-defined subclass of `Rule`, with arguments.
-
-    Raises
-    ------
-    InputError
-        If there is no such rule, or an argument is not allowed.
     """
     return rule if isinstance(rule, Rule) else build("rule", rule, RULES, Rule)
 

@@ -7,14 +7,9 @@ from kswarms.agents.user_code.syntax import Call
 
 
 def with_learning(policy: str, part: str, text: str | None = None, /, **arguments: Any) -> str:
-    """Return a policy with the reward or the rule of its learners changed; other policies stay.
+    """Return one or several policies with the reward or the rule (`part`) of the learners changed.
 
-    Parameters
-    ----------
-    policy, part : str
-        One or several policies; ``reward`` or ``rule``.
-    text : str, optional
-        The new reward or rule. By default the current one is kept, with `arguments` changed.
+    `text` is the new reward or rule. By default the current one is kept, with `arguments` changed.
 
     Examples
     --------

@@ -27,7 +27,7 @@ class Learner:
     Parameters
     ----------
     setting : Setting
-        Where the policy plays.
+        The robot and the game.
     about : {'inter', 'intra', 'both'}
         Learn about other swarms, the own swarm, or both.
     reward : str or Reward
@@ -121,9 +121,8 @@ class Learner:
         bandit = self.bandits.get(opponent)
         if bandit is None or not self.learning:
             return _NOTHING
-        reward = self.reward.of(
-            t_a, t_p, n_active, self.actions[arm].direction, opponent != self.swarm, opponent + 1
-        )
+        direction, inter = self.actions[arm].direction, opponent != self.swarm
+        reward = self.reward.of(t_a, t_p, n_active, direction, inter, opponent + 1)
         if not isfinite(reward):
             raise InputError("reward", reward, f"must be finite, also for T(a)={t_a:g}, T(p)={t_p:g}")
         bandit.update(arm, reward, t_a + t_p, self._factor)

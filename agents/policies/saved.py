@@ -42,19 +42,8 @@ class LearnedPolicy:
     """Actions learned in another game: argmax Q for each opponent swarm, flight without data.
 
     Robot k of the swarm takes policy k of the file, modulo the number of policies, so the swarm may differ in
-    size from the one that learned.
-
-    Parameters
-    ----------
-    setting : Setting
-        Where the policy plays.
-    file : str
-        Path of a file written by `save`.
-
-    Raises
-    ------
-    InputError
-        If there is no such file, or its policies do not fit the game.
+    size from the one that learned. `file` is the path of a file written by `save`; its actions and swarms
+    must be those of the game.
     """
 
     def __init__(self, setting: Setting, file: str = "") -> None:

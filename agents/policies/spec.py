@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from pathlib import Path
-from typing import Any, Final, Self
+from typing import Any, Self
 
 from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
@@ -29,26 +29,14 @@ Factory = Callable[[Setting], Policy]
 PolicyLike = str | Factory | Sequence[str | Factory]
 """One policy, or several that are dealt out to the robots of a swarm."""
 
-_MAKERS: Final[dict[str, Callable[[Any], Any]]] = {"reward": make_reward, "rule": make_rule}
-
 
 @dataclass(frozen=True)
 class PolicySpec:
-    """One policy with its arguments. Printing it gives its text.
+    """One policy with its arguments. Printing it gives its text."""
 
-    Attributes
-    ----------
-    label : str
-        Text of the policy, or the name of a factory without a text.
-    given : callable, optional
-        The class or factory, if the policy was given as one.
-    call : Call, optional
-        Name and arguments; None for a factory that another process cannot import.
-    """
-
-    label: str
-    given: Factory | None = None
-    call: Call | None = field(default=None, compare=False)
+    label: str  # text of the policy, or the name of a factory without a text
+    given: Factory | None = None  # the class or factory, if the policy was given as one
+    call: Call | None = field(default=None, compare=False)  # None if no other process can import it
 
     @classmethod
     def of_factory(cls, factory: Factory) -> Self:
@@ -70,11 +58,11 @@ class PolicySpec:
 
     def _require_call(self) -> Call:
         if self.call is None:
-            allowed = (
+            rule = (
                 "cannot be imported by other processes: define the class at the top level of a module or "
                 "script, and give the class or functools.partial of it with plain values"
             )
-            raise InputError("policy", self.label, allowed)
+            raise InputError("policy", self.label, rule)
         return self.call
 
     @property
@@ -93,13 +81,7 @@ class PolicySpec:
         return self.given is not None or is_reference(self.name)
 
     def factory(self, actions: Sequence[Action]) -> Factory:
-        """Load the class and check the arguments; return a factory for robots of a game with these actions.
-
-        Raises
-        ------
-        InputError
-            If there is no such policy, or an argument is not allowed.
-        """
+        """Load the class and check the arguments; return a factory for a game with these actions."""
         name, make, arguments = self.name, self.given, {} if self.given else dict(self.arguments)
         by_name = {action.name: action for action in actions}
         if make is None and name in by_name:
@@ -115,14 +97,14 @@ class PolicySpec:
                 raise InputError("policy", name, rule)
             make = POLICIES[name]
         check_factory(name, make, arguments)
-        if not self.is_user_defined:
-            with InputError.within("policy"):
-                for part, text in (LEARNS_BY if self.learns_by("reward") else {}).items():
-                    arguments[part] = _MAKERS[part](arguments.get(part, text))
+        with InputError.within("policy"):
+            if self.learns_by("reward"):  # all robots share one reward and one rule
+                arguments["reward"] = make_reward(arguments.get("reward", LEARNS_BY["reward"]))
+                arguments["rule"] = make_rule(arguments.get("rule", LEARNS_BY["rule"]))
         return partial(_build, name if self.is_user_defined else "", make, arguments)
 
     def build(self, setting: Setting) -> Policy:
-        """Build the policy of one robot, see `factory`."""
+        """Build the policy of one robot."""
         return self.factory(setting.actions)(setting)
 
     __call__ = build
@@ -159,11 +141,6 @@ def parse_policies(policy: PolicyLike) -> tuple[PolicySpec, ...]:
     """Return the policies of a swarm, in the order in which they are dealt out.
 
     Names and values are checked when a policy is built.
-
-    Raises
-    ------
-    InputError
-        If a text cannot be parsed, or the policy is no text, callable or sequence of these.
 
     Examples
     --------
@@ -214,7 +191,20 @@ def deal(policy: PolicyLike, size: int) -> list[PolicySpec]:
 
 
 def make_policy(policy: str | Factory, setting: Setting) -> Policy:
-    """Build one policy for one robot, see `PolicySpec.factory`."""
+    """Build the policy of one robot.
+
+    Parameters
+    ----------
+    policy : str or callable
+        One policy: a text, a class, or a callable that returns a policy.
+    setting : Setting
+        The robot and the game.
+
+    Raises
+    ------
+    InputError
+        If there is no such policy, it is not exactly one, an argument is not allowed, or user code fails.
+    """
     (spec,) = parse_policies(policy)
     return spec.build(setting)
 

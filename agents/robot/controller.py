@@ -5,38 +5,18 @@ from typing import NamedTuple
 
 
 class Controller(NamedTuple):
-    """Constants of a robot's controller; lengths in metres, angles in radians.
+    """Constants of a robot's controller; lengths in metres, angles in radians."""
 
-    Attributes
-    ----------
-    period : float
-        Control period (s).
-    turn_step : float
-        Maximum turn in a period.
-    leg_mean : float
-        Mean duration of a wander leg (s).
-    wander_turn : float
-        Turns between legs are uniform within ± this angle.
-    half : float
-        Half the side of the arena.
-    wall_reach, wall_half_angle : float
-        As in `walls_met`.
-    radius, active_range : float
-        As in `sensed_robots`.
-    escape_away : bool
-        Whether a turn at walls only needs to point away from the walls met.
-    """
-
-    period: float
-    turn_step: float
-    leg_mean: float
-    wander_turn: float
-    half: float
-    wall_reach: float
-    wall_half_angle: float
-    radius: float
-    active_range: float
-    escape_away: bool
+    period: float  # control period (s)
+    turn_step: float  # maximum turn in a period
+    leg_mean: float  # mean duration of a wander leg (s)
+    wander_turn: float  # turns between legs are uniform within ± this angle
+    half: float  # half the side of the arena
+    wall_reach: float  # as in `walls_met`
+    wall_half_angle: float  # as in `walls_met`
+    radius: float  # of the body
+    active_range: float  # a sensor that reads a smaller distance is active
+    escape_away: bool  # whether a turn at walls only needs to point away from the walls met
 
     def periods(self, seconds: float) -> int:
         """Return a duration in periods, rounded up, at least 1."""

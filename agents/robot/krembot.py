@@ -9,13 +9,15 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any, Final
 
+import numpy as np
 from simpy.events import Timeout
 
 from kswarms.agents.actions import TOWARDS, Action
+from kswarms.agents.body import SENSORS
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.interface import Policy
 from kswarms.agents.robot.host import Host
-from kswarms.agents.robot.sensing import ANGLES_OF, heads_for, sensed_robots, walls_met, wrap
+from kswarms.agents.robot.sensing import ANGLES_OF, heads_for, read_sensors, walls_met, wrap
 from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, HOMING_ERROR, IDLE, LEG, LEG_OVER, TURN
 from kswarms.agents.robot.time_account import TimedAgent
 from kswarms.agents.streams import Purpose, Streams
@@ -27,33 +29,9 @@ _STRAIGHT: Final = 1e-9
 class Krembot(TimedAgent):
     """Behaviour of one robot. Time accounting is in `TimedAgent`.
 
-    Parameters
-    ----------
-    model : Host
-        The model.
-    number : int
-        Number of the robot in the game, from 0, also of its random streams.
-    swarm : int
-        Swarm, from 0.
-    policy : Policy
-        The policy. Its method ``learn``, if there is one, is called at the end of each conflict.
-    policy_name : str
-        Text of the policy.
-    streams : Streams
-        Random streams of the robot.
-    stride_program, stride_action : float
-        Distance driven in a period in state P and in state A (m).
-    swarms : int
-        Number of swarms in the game.
-    actions : sequence of Action, optional
-        The actions of the game, to check the choices of a user-defined policy.
-
-    Attributes
-    ----------
-    index : int
-        Row in the state arrays (absent robots are skipped).
-    pucks : int
-        Number of deposited pucks.
+    `number` is its number in the game and `swarm` its swarm, both from 0; `index` is its row in the state
+    arrays (absent robots are skipped). In a period it drives `stride_program` in state P and `stride_action`
+    in state A (m). `actions`, if given, are the only allowed choices of a user-defined policy.
     """
 
     __slots__ = (
@@ -79,7 +57,7 @@ class Krembot(TimedAgent):
         self.number = number
         self.swarm = swarm
         self.policy_name = policy_name
-        self.pucks = 0
+        self.pucks = 0  # number of deposited pucks
         self._draws = streams.draws
         self._allowed = actions
         self._states = model.states
@@ -92,8 +70,7 @@ class Krembot(TimedAgent):
         self._stride_program = stride_program
         self._stride_action = stride_action
         self._timer: Timeout | None = None
-        self._action: Action | None = None
-        """Action of the latest conflict."""
+        self._action: Action | None = None  # of the latest conflict
 
     @property
     def carrying(self) -> bool:
@@ -160,12 +137,9 @@ class Krembot(TimedAgent):
     def meet(self, now: int, other: int, swarm: int, angle: float, active: int, vacant: int) -> None:
         """Begin a conflict at `now` (periods) and close the previous one.
 
-        Parameters
-        ----------
-        other, swarm, angle : int, int, float
-            The robot ahead, its swarm (from 0) and its bearing (rad). The policy is told only the swarm.
-        active, vacant : int
-            Number of active sensors, n'_i of Eq. 5.4, and the most vacant directions, one bit per sensor.
+        `other` is the robot ahead, `swarm` its swarm (from 0) and `angle` its bearing (rad); the policy gets
+        only the swarm. `active` is the number of active sensors, n'_i of Eq. 5.4. `vacant` has the bits of
+        the most vacant sensors.
         """
         self.close(now)
         index = self.index
@@ -201,8 +175,10 @@ class Krembot(TimedAgent):
         """Return the robot that each sensor reads at the start of a conflict, −1 for none."""
         states, controller = self._states, self._controller
         forward = states.robots[self.index]["forward_x"], states.robots[self.index]["forward_y"]
-        reach = controller.radius, controller.half, controller.active_range
-        return sensed_robots(self.index, met, *forward, states.positions, *reach)
+        nearest, read = np.full(SENSORS, controller.active_range), np.full(SENSORS, -1)
+        arena = controller.radius, controller.half
+        read_sensors(self.index, met, *forward, states.positions, *arena, nearest, read)
+        return tuple(read.tolist())
 
     def _vacant_direction(self, vacant: int) -> float:
         """Return the angle of the most vacant sensor from the heading (rad), ties broken at random."""

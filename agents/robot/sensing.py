@@ -7,8 +7,6 @@ angles in radians.
 import math
 from typing import Final
 
-import numpy as np
-
 from kswarms.agents.body import SENSORS
 from kswarms.agents.common.arrays import Floats, Integers
 from kswarms.agents.common.jit import compiled
@@ -102,22 +100,16 @@ def sense(
 
     Parameters
     ----------
-    robot : int
-        The sensing robot.
     forward_x, forward_y : float
-        Unit vector of its heading.
+        Unit vector of the heading of `robot`.
     positions : ndarray of float64, shape (n, 2)
         Centres of all robots.
     others : ndarray of int64, shape (≥ n_others,)
         Robots that may be in range; `robot` itself is skipped.
     n_others : int
         Number of valid entries of `others`.
-    radius : float
-        Radius of every body.
-    half : float
-        Half the side of the arena.
-    limit : float
-        Robots with a larger gap are skipped.
+    radius, half, limit : float
+        Radius of every body, half the side of the arena; robots with a gap larger than `limit` are skipped.
     free : ndarray of float64, shape (8,)
         Output: the distances, starting with the sensor ahead, counter-clockwise.
     """
@@ -158,30 +150,8 @@ def _sector(ahead: float, aside: float) -> int:
     return 6 if -y > x else 7
 
 
-def sensed_robots(
-    robot: int,
-    met: int,
-    forward_x: float,
-    forward_y: float,
-    positions: Floats,
-    radius: float,
-    half: float,
-    active_range: float,
-) -> tuple[int, ...]:
-    """Return the robot that each sensor reads at the start of a conflict with `met`, −1 for none.
-
-    Sensors and parameters are those of `sense`. A sensor is active if the nearest robot or wall in its sector
-    is within `active_range`, from surface to surface; it reads this robot or wall. The sensor towards the
-    opponent always reads the opponent.
-    """
-    nearest = np.full(SENSORS, active_range)
-    read = np.full(SENSORS, -1)
-    _fill_sensors(robot, met, forward_x, forward_y, positions, radius, half, nearest, read)
-    return tuple(read.tolist())
-
-
 @compiled
-def _fill_sensors(
+def read_sensors(
     robot: int,
     met: int,
     forward_x: float,
@@ -192,7 +162,19 @@ def _fill_sensors(
     nearest: Floats,
     read: Integers,
 ) -> None:
-    """Write the robot that each sensor reads, and lower `nearest` to its distance."""
+    """Find the robot that each sensor reads at the start of a conflict with `met`.
+
+    A sensor is active if the nearest robot or wall in its sector is within the active range, from surface to
+    surface; it reads this robot or wall. The sensor towards the opponent always reads the opponent. The other
+    parameters are those of `sense`.
+
+    Parameters
+    ----------
+    nearest : ndarray of float64, shape (8,)
+        The active range in all entries; lowered to the distance that each sensor reads.
+    read : ndarray of int64, shape (8,)
+        −1 in all entries; set to the robot that each sensor reads.
+    """
     x = positions[robot, 0]
     y = positions[robot, 1]
     for sensor in range(SENSORS):

@@ -26,39 +26,24 @@ ROBOT: Final = np.dtype(
 """Row of a robot."""
 
 # Phases. ACTION is state A, all others are state P.
-IDLE: Final = 0
-"""Waiting for a decision at the next percepts."""
-LEG: Final = 1
-"""Wandering straight ahead."""
-LEG_OVER: Final = 2
-"""The leg is over: waiting for the decision to turn."""
-TURN: Final = 3
-"""Turning in place between legs or at a wall."""
-HOME_TURN: Final = 4
-"""Turning in place towards the own base."""
-HOME: Final = 5
-"""Driving to the own base with a puck."""
-ACTION: Final = 6
-"""Resolving a conflict, including the turn."""
+IDLE: Final = 0  # waiting for a decision at the next percepts
+LEG: Final = 1  # wandering straight ahead
+LEG_OVER: Final = 2  # the leg is over: waiting for the decision to turn
+TURN: Final = 3  # turning in place between legs or at a wall
+HOME_TURN: Final = 4  # turning in place towards the own base
+HOME: Final = 5  # driving to the own base with a puck
+ACTION: Final = 6  # resolving a conflict, including the turn
 
-HOMING_ERROR: Final = 0.05
-"""A robot on its way home turns if its heading is off by more than this angle (rad)."""
+HOMING_ERROR: Final = 0.05  # a robot on its way home turns if its heading is off by more (rad)
 
 
 class RobotStates:
-    """States of all robots.
-
-    Parameters
-    ----------
-    positions : ndarray of float64, shape (n, 2)
-        Centres (m). The array is shared with Mesa's space, not copied.
-    swarm : ndarray of int64, shape (n,)
-        Swarm of each robot, from 0.
-    headings : ndarray of float64, shape (n,)
-        Initial headings (rad).
+    """States of n robots.
 
     Attributes
     ----------
+    positions : ndarray of float64, shape (n, 2)
+        Centres (m). The array is shared with Mesa's space, not copied.
     robots : ndarray of `ROBOT`, shape (n,)
         The array for the kernel.
     swarm, phase, carrying, opponent, heading, stride, turn_rate : memoryview, shape (n,)
@@ -77,14 +62,9 @@ class RobotStates:
         self._view()
 
     def keep(self, rows: Integers, positions: Floats) -> None:
-        """Keep only some robots.
+        """Keep only some rows, ascending, shape (m,); they become rows 0 … m − 1 in the same memory.
 
-        Parameters
-        ----------
-        rows : ndarray of int64, shape (m,)
-            Rows to keep, ascending. They become rows 0 … m − 1, in the same memory.
-        positions : ndarray of float64, shape (m, 2)
-            Centres of these robots (m). The array is not copied.
+        `positions` are the centres of these robots (m), shape (m, 2). The array is not copied.
         """
         new_row = np.full(len(self.robots) + 1, -1)  # the last entry is for opponent −1
         new_row[rows] = np.arange(len(rows))

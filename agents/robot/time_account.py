@@ -15,25 +15,8 @@ from kswarms.agents.robot.state import ACTION
 class TimedAgent(ContinuousSpaceAgent):
     """An agent in continuous space that measures its times of action and program, and learns from them.
 
-    Parameters
-    ----------
-    model : Host
-        The model.
-    index : int
-        Row in the state arrays.
-    policy : Policy
-        The policy. Its method ``learn``, if there is one, is called at the end of each conflict.
-    swarms : int
-        Number of swarms in the game.
-
-    Attributes
-    ----------
-    t_a : list of int, length `swarms`
-        Periods of completed actions, by the opponent's swarm.
-    t_p : int
-        Periods of completed program.
-    conflicts : list of int, length `swarms`
-        Number of conflicts begun, by the opponent's swarm.
+    `index` is its row in the state arrays. The policy's method ``learn``, if there is one, is called at the
+    end of each conflict.
     """
 
     # Slots, here and in `Krembot`, are faster than a dict of more than thirty attributes.
@@ -46,28 +29,22 @@ class TimedAgent(ContinuousSpaceAgent):
         super().__init__(model.space, cast(Any, model))
         self.index = index
         self.policy = policy
-        self.t_a = [0] * swarms
-        self.t_p = 0
-        self.conflicts = [0] * swarms
+        self.t_a = [0] * swarms  # periods of completed actions, by the opponent's swarm
+        self.t_p = 0  # periods of completed program
+        self.conflicts = [0] * swarms  # number of conflicts begun, by the opponent's swarm
         self._env = model.env
         self._phase = model.states.phase
         self._period = model.controller.period
         self._learn: Callable[[float, float, int], tuple[float, float]] | None
         self._learn = getattr(policy, "learn", None)
         self._log = model.conflict_log
-        self._since = int(model.env.now)
-        """Start of the current action or program (periods)."""
-        self._is_open = False
-        """Whether a conflict is open."""
-        self._is_over = False
-        """Whether the game has ended."""
-        self._active = 0
-        """Number of active sensors at the start of the open conflict."""
-        self._opponent_swarm = -1
-        """Swarm of the opponent of the latest conflict."""
-        self._open: tuple[Any, ...] = ()
-        """First fields of the open `Conflict`, if conflicts are logged."""
-        self._open_t_a = 0
+        self._since = int(model.env.now)  # start of the current action or program (periods)
+        self._is_over = False  # whether the game has ended
+        self._is_open = False  # whether a conflict is open
+        self._active = 0  # number of active sensors at the start of the latest conflict
+        self._opponent_swarm = -1  # swarm of the opponent of the latest conflict
+        self._open: tuple[Any, ...] = ()  # first fields of the open `Conflict`, if conflicts are logged
+        self._open_t_a = 0  # T(a) of the latest conflict (periods)
 
     @property
     def state(self) -> str:

@@ -79,19 +79,14 @@ def zero_sum(rows: Sequence[str], columns: Sequence[str], own: Floats) -> Normal
 
 
 def exact_potential(payoffs: Sequence[Floats]) -> Floats | None:
-    """Return an exact potential of a game.
+    """Return the exact potential of a game that is 0 at the first actions of all; None if it has none.
 
     When one player alone changes its action, the potential changes by the same amount as its payoff.
 
     Parameters
     ----------
     payoffs : sequence of ndarray of float64, length n, each of shape (A_1, …, A_n)
-        Payoff of each player for every combination of actions.
-
-    Returns
-    -------
-    ndarray of float64, shape (A_1, …, A_n), or None
-        The potential that is 0 at the first actions of all; None if the game has none.
+        Payoff of each player for every combination of actions. The potential has the same shape.
     """
     tables = [np.asarray(payoff, dtype=float) for payoff in payoffs]
     potential = np.zeros(tables[0].shape)

@@ -115,17 +115,7 @@ def approximate_wlu(
 
 
 class Crowd(NamedTuple):
-    """Numbers and weights of the robots that robot i met.
-
-    Attributes
-    ----------
-    n_k, n_m : int
-        Number of robots of its own swarm and of others.
-    alpha_i, beta_i : float
-        Weights of robot i.
-    alpha_k, beta_k, alpha_m, beta_m : float
-        Mean weights of the robots met.
-    """
+    """Numbers n_k and n_m of the robots of its own swarm and of others that robot i met, and mean weights."""
 
     n_k: int
     n_m: int

@@ -28,22 +28,10 @@ def is_reference(name: str) -> bool:
 
 
 def load_class(field: str, reference: str, base: type | None = None) -> type[Any]:
-    """Return the class that a reference names.
+    """Return the class that a reference names; errors name `field`.
 
     A file is executed once per process and content; its path is relative to the current directory. A module
-    is imported, also from the current directory.
-
-    Parameters
-    ----------
-    field, reference : str
-        Name of the field, for errors, and the reference.
-    base : type, optional
-        Required base class, all of whose abstract methods must be defined.
-
-    Raises
-    ------
-    InputError
-        If the file, module or class does not exist, its code fails, or it is not such a subclass.
+    is imported, also from the current directory. The class must define all abstract methods of `base`.
     """
     where, name = _split(field, reference)
     module = _load_module(field, reference, where)

@@ -23,12 +23,7 @@ class Call(NamedTuple):
 
 
 def parse_call(field: str, text: str) -> Call:
-    """Parse ``name`` or ``name(key=value, …)``, where the values are Python literals.
-
-    Raises
-    ------
-    InputError
-        If the text cannot be parsed; it names `field`.
+    """Parse ``name`` or ``name(key=value, …)``, where the values are Python literals; errors name `field`.
 
     Examples
     --------
@@ -61,13 +56,7 @@ def is_literal(value: Any) -> bool:
 
 
 def build(field: str, text: str, known: Mapping[str, type[_Thing]], base: type) -> _Thing:
-    """Build the object that a text describes: of a class in `known`, or of a user-defined subclass of `base`.
-
-    Raises
-    ------
-    InputError
-        If the name is unknown or an argument is not allowed; it names `field`.
-    """
+    """Build the object that a text describes, of a class in `known` or a user-defined subclass of `base`."""
     call = parse_call(field, text)
     if call.name in known:
         kind = known[call.name]

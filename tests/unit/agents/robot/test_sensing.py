@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from kswarms.agents.robot.sensing import SECTOR, heads_for, sense, sensed_robots, wall_ray, walls_met, wrap
+from kswarms.agents.robot.sensing import SECTOR, heads_for, read_sensors, sense, wall_ray, walls_met, wrap
 
 angles = st.floats(-math.pi, math.pi)
 coordinates = st.floats(-0.99, 0.99)
@@ -176,7 +176,9 @@ def read(
     positions: list[tuple[float, float]], met: int, heading: float = 0.0, reach: float = 0.3
 ) -> list[int]:
     forward = math.cos(heading), math.sin(heading)
-    return list(sensed_robots(0, met, *forward, np.array(positions), RADIUS, 1.0, reach))
+    nearest, read = np.full(8, reach), np.full(8, -1)
+    read_sensors(0, met, *forward, np.array(positions), RADIUS, 1.0, nearest, read)
+    return read.tolist()
 
 
 def test_an_active_sensor_reads_the_nearest_robot_in_its_sector() -> None:
