@@ -1,29 +1,30 @@
 """Bootstrap confidence intervals over seeds: the one kind of interval of figures, tables and findings.
 
-Every statistic here is a function of the mean over the seeds. The mean of a resample is a weighted mean of
-the seeds, so one product of two arrays gives all resamples.
+SciPy does the statistics. Fixed here are the method, the number of resamples and their random seed, so that
+the same results always give the same interval.
 """
 
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import special
+from scipy import special, stats
 
 from kswarms.agents.common.errors import InputError
 
 Values = NDArray[np.float64]
 Statistic = Callable[[Values], Values]
-"""Maps means over the seeds, shape (resamples, …), to values of shape (resamples, …)."""
+"""Maps means over the seeds, shape (resamples, …), to values of shape (resamples,)."""
 
 CONFIDENCE: Final = 0.95
 RESAMPLES: Final = 9999
-# Fixed, so that the same results always give the same interval.
 RANDOM_SEED: Final = 0
+_BATCH: Final = 2_000_000
+"""Maximum number of values resampled at a time, which bounds the memory."""
 
 
 @dataclass(frozen=True)
@@ -46,21 +47,10 @@ def bootstrap_interval(
     confidence: float = CONFIDENCE,
     smooth: bool = True,
 ) -> Interval:
-    """Return one statistic with its interval; see `bootstrap_intervals`."""
-    estimate, low, high = bootstrap_intervals(samples, statistic, confidence, smooth)
-    return Interval(float(estimate), float(low), float(high))
+    """Return a statistic of the mean over the seeds, with its bootstrap interval.
 
-
-def bootstrap_intervals(
-    samples: ArrayLike,
-    statistic: Statistic = mean_itself,
-    confidence: float = CONFIDENCE,
-    smooth: bool = True,
-) -> tuple[Values, Values, Values]:
-    """Return statistics of the mean over the seeds, with bootstrap intervals.
-
-    The method is BCa (bias-corrected and accelerated), or percentiles where BCa is undefined. Bootstrap
-    intervals of few seeds are too narrow, so each tail is Φ(−√(n / (n − 1)) t), where t is the quantile of
+    The method is BCa (`scipy.stats.bootstrap`), or percentiles where BCa is undefined. Bootstrap intervals of
+    few seeds are too narrow, so the level is raised to 2 Φ(√(n / (n − 1)) t) − 1, where t is the quantile of
     Student's distribution with n − 1 degrees of freedom (Hesterberg 2015, "expanded percentile").
 
     Parameters
@@ -68,52 +58,84 @@ def bootstrap_intervals(
     samples : array_like
         Shape (seeds, …). All values of a seed are resampled together.
     statistic : callable
-        Maps means of shape (resamples, …) to values of shape (resamples, …); the default is the mean itself.
+        Maps means of shape (resamples, …) to values of shape (resamples,); the default is the mean itself.
     confidence : float
-        Level of the intervals, 0 … 1.
+        Level of the interval, 0 … 1.
     smooth : bool
         False for a statistic of ranks. BCa is not valid for it: where all ranks are chance, intervals of 95 %
         for a rank correlation excluded 0 in a fifth of all samples. Its bounds are percentiles.
 
     Returns
     -------
-    estimate, low, high : ndarray of float64
-        The statistic of all seeds and its bounds. Identical seeds give an interval of width 0. With fewer
-        seeds than `fewest_seeds`, the bounds are −inf and inf. Both are NaN where the statistic is NaN in any
-        resample.
+    Interval
+        Identical seeds give an interval of width 0. With fewer seeds than `fewest_seeds`, the bounds are −inf
+        and inf.
+
+    Raises
+    ------
+    InputError
+        If there is no seed, or the confidence is not between 0 and 1.
     """
     values = np.asarray(samples, dtype=np.float64)
     seeds = check_seeds(values, 1)
 
-    # Relative to the first seed, so that means of identical seeds are exact.
-    offsets = (values - values[0]).reshape(seeds, -1)
+    # SciPy resamples lists of numbers, so each seed is represented by its index.
+    def of_seeds(chosen: NDArray[np.int64], axis: int = -1) -> Values:
+        drawn = values[chosen.reshape(-1, chosen.shape[-1])]
+        return statistic(drawn.mean(axis=1)).reshape(chosen.shape[:-1])
 
-    def of_means(counts: Values, total: int) -> Values:
-        # einsum, not BLAS: its threads wait for each other on a busy machine.
-        means = np.einsum("sv,sr->vr", offsets, counts).T.reshape(-1, *values.shape[1:])
-        return np.moveaxis(statistic(values[0] + means / total), 0, -1)
-
-    estimate = of_means(np.ones((seeds, 1)), seeds)[..., 0]
+    identical = bool((values == values[0]).all())
+    all_seeds = values[:1] if identical else values.mean(axis=0)[np.newaxis]
+    estimate = float(statistic(all_seeds)[0])
     if seeds < fewest_seeds(confidence):
-        return estimate, np.full_like(estimate, -np.inf), np.full_like(estimate, np.inf)
-    resampled = np.sort(of_means(_seed_counts(seeds), seeds))
-    student = float(special.stdtrit(seeds - 1, (1 + confidence) / 2))
-    reach = math.sqrt(seeds / (seeds - 1)) * student
-    if not smooth:
-        undefined = np.full_like(estimate, np.nan)
-        low, high = (_quantile(resampled, undefined, z) for z in (-reach, reach))
-        return estimate, low, high
-    with np.errstate(invalid="ignore", divide="ignore"):
-        below, up_to = (
-            np.count_nonzero(compare(resampled, estimate[..., np.newaxis]), axis=-1)
-            for compare in (np.less, np.less_equal)
+        return Interval(estimate, -math.inf, math.inf)
+    if identical:
+        return Interval(estimate, estimate, estimate)
+    size = values[0].size
+    low, high = _bounds(np.arange(seeds), of_seeds, confidence, "BCa" if smooth else "percentile", size)
+    return Interval(estimate, float(low), float(high))
+
+
+def intervals_of_means(samples: Values) -> tuple[Values, Values]:
+    """Return the bounds of the 95 % intervals of many means; samples have the shape (means, seeds).
+
+    Each interval is that of `bootstrap_interval`. There must be at least `fewest_seeds` seeds.
+    """
+    # Relative to the first seed, so that means of identical seeds are exact.
+    first = samples[:, :1]
+    low, high = _bounds(samples - first, np.mean, CONFIDENCE, "BCa", len(samples))
+    return first[:, 0] + low, first[:, 0] + high
+
+
+def _bounds(
+    data: NDArray[Any], statistic: Callable[..., Values], confidence: float, method: Any, size: int
+) -> tuple[Values, Values]:
+    """Return the bounds of the intervals of a statistic along the last axis, which is that of the seeds."""
+    seeds = data.shape[-1]
+    student = special.stdtrit(seeds - 1, (1 + confidence) / 2)
+    level = float(2 * special.ndtr(math.sqrt(seeds / (seeds - 1)) * student) - 1)
+    with warnings.catch_warnings(), np.errstate(invalid="ignore"):
+        # BCa warns where it is undefined; percentiles then take its place.
+        warnings.simplefilter("ignore", stats.DegenerateDataWarning)
+        warnings.simplefilter("ignore", RuntimeWarning)
+        result = stats.bootstrap(
+            (data,),
+            statistic,
+            axis=-1,
+            vectorized=True,
+            n_resamples=RESAMPLES,
+            batch=max(1, _BATCH // (size * seeds)),
+            confidence_level=level,
+            method=method,
+            rng=np.random.default_rng(RANDOM_SEED),
         )
-        bias = special.ndtri((below + up_to) / (2 * RESAMPLES))
-        one_left_out = of_means(1 - np.eye(seeds), seeds - 1)
-        gaps = one_left_out.mean(axis=-1, keepdims=True) - one_left_out
-        acceleration = (gaps**3).sum(axis=-1) / (6 * (gaps**2).sum(axis=-1) ** 1.5)
-    low, high = (_quantile(resampled, _level(bias, acceleration, z), z) for z in (-reach, reach))
-    return estimate, low, high
+    low, high = (np.asarray(bound, dtype=np.float64) for bound in result.confidence_interval)
+    # A sampled value, never a value between two: these may be infinite.
+    tails = np.quantile(
+        result.bootstrap_distribution, [(1 - level) / 2, (1 + level) / 2], axis=-1, method="inverted_cdf"
+    )
+    undefined = np.isnan(low) | np.isnan(high)
+    return np.where(undefined, tails[0], low), np.where(undefined, tails[1], high)
 
 
 def fewest_seeds(confidence: float = CONFIDENCE) -> int:
@@ -137,28 +159,3 @@ def check_confidence(confidence: float) -> None:
     """Require a level between 0 and 1."""
     if not 0 < confidence < 1:
         raise InputError("confidence", confidence, "must be between 0 and 1")
-
-
-@lru_cache(maxsize=4)
-def _seed_counts(seeds: int) -> Values:
-    """Return how often each seed is in each resample, shape (seeds, RESAMPLES)."""
-    counts = np.random.default_rng(RANDOM_SEED).multinomial(seeds, np.full(seeds, 1 / seeds), size=RESAMPLES)
-    return np.ascontiguousarray(counts.T, dtype=np.float64)
-
-
-def _level(bias: Values, acceleration: Values, z: float) -> Values:
-    """Return the quantile level that BCa uses for a normal quantile `z`; NaN where BCa is undefined."""
-    with np.errstate(invalid="ignore"):
-        shrink = 1 - acceleration * (bias + z)
-        level = special.ndtr(bias + (bias + z) / shrink)
-    return np.where(np.isfinite(bias) & (shrink > 0), level, np.nan)
-
-
-def _quantile(ordered: Values, level: Values, z: float) -> Values:
-    """Return quantiles along the sorted last axis, at the level of `z` where `level` is NaN."""
-    level = np.where(np.isnan(level), special.ndtr(z), level)
-    # A sampled value, never a value between two: these may be infinite.
-    index = np.clip(np.ceil(level * RESAMPLES).astype(int) - 1, 0, RESAMPLES - 1)
-    found = np.take_along_axis(ordered, index[..., np.newaxis], axis=-1)[..., 0]
-    # NaNs are sorted last.
-    return np.where(np.isnan(ordered[..., -1]), np.nan, found)

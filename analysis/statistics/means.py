@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from kswarms.analysis.statistics.intervals import bootstrap_intervals, fewest_seeds
+from kswarms.analysis.statistics.intervals import fewest_seeds, intervals_of_means
 from kswarms.analysis.text_tables import span
 
 CURVE = ("condition", "swarm")
@@ -48,8 +48,8 @@ def with_intervals(rows: pd.DataFrame, key: Sequence[str], quantity: str) -> pd.
     low, high = np.full(len(groups), np.nan), np.full(len(groups), np.nan)
     for count in np.unique(seeds[seeds >= fewest_seeds()]):
         (same,) = np.nonzero(seeds == count)
-        samples = values[starts[same] + np.arange(count)[:, np.newaxis]]
-        _, low[same], high[same] = bootstrap_intervals(samples)
+        samples = values[starts[same, np.newaxis] + np.arange(count)]
+        low[same], high[same] = intervals_of_means(samples)
     return groups.assign(low=low, high=high)
 
 
