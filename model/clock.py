@@ -13,17 +13,7 @@ AFTER_TIMEOUTS: Final = 2
 
 
 class Instant(Event):
-    """Reusable event with an explicit priority, which calls `callback` with itself.
-
-    Parameters
-    ----------
-    env : simpy.Environment
-        The clock.
-    priority : int
-        `BEFORE_TIMEOUTS` or `AFTER_TIMEOUTS`.
-    callback : callable
-        Called with the event.
-    """
+    """Reusable event with an explicit priority, `BEFORE_TIMEOUTS` or `AFTER_TIMEOUTS`."""
 
     def __init__(self, env: simpy.Environment, priority: int, callback: Callable[[Event], None]) -> None:
         super().__init__(env)

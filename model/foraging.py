@@ -51,9 +51,7 @@ class ForagingModel(GameModel):
         for name, text in (("shares", shares), ("drives", drives), ("record", record)):
             if not isinstance(text, str):
                 raise InputError(name, text, "must be a text")
-        super().__init__(
-            Game(swarms=_swarms(n, policies, shares, drives), **fields), seed=seed, record=record
-        )
+        super().__init__(Game(swarms=_swarms(n, policies, shares, drives), **fields), seed, record)
 
 
 def _swarms(n: int, policies: str | Sequence[PolicyLike], shares: str, drives: str) -> tuple[Swarm, ...]:

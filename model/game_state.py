@@ -16,16 +16,7 @@ from kswarms.model.population import controller_constants, make_robots, place_ro
 
 
 class GameState(mesa.Model):
-    """State of a game.
-
-    Parameters
-    ----------
-    game : Game
-        The game.
-    seed : int
-        Seed of the run, ≥ 0. It names all random streams, together with robot and purpose.
-    log_conflicts : bool
-        Whether robots log their conflicts.
+    """State of a game. A random stream is determined by the seed of the run, the robot and the purpose.
 
     Attributes
     ----------
@@ -54,12 +45,7 @@ class GameState(mesa.Model):
     ended : {'', 'time', 'pucks', 'cap'}
         Reason for the end of the game; empty before it.
     conflict_log : list of Conflict, optional
-        Closed conflicts that the recorder has not stored yet.
-
-    Raises
-    ------
-    InputError
-        If the seed is not allowed, or there is no room for the robots.
+        Closed conflicts that the recorder has not stored yet; None if conflicts are not recorded.
     """
 
     def __init__(self, game: Game, seed: int, log_conflicts: bool) -> None:
@@ -71,9 +57,8 @@ class GameState(mesa.Model):
         self.env = simpy.Environment()
         self.arena = game.arena(self.seed)
         self.controller = controller_constants(game)
-        self.action_periods: Mapping[str, int] = {
-            a.name: self.controller.periods(a.duration) for a in game.action_set
-        }
+        periods = self.controller.periods
+        self.action_periods: Mapping[str, int] = {a.name: periods(a.duration) for a in game.action_set}
         self.conflict_log: list[Conflict] | None = [] if log_conflicts else None
         self.begin = math.ceil(game.learning / game.parameters.period - 1e-9)
         self.phase = "learning" if self.begin > 0 else "game"

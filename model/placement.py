@@ -1,7 +1,7 @@
 """Starting places of robots: uniformly at random, without overlap (specification, section 3.1).
 
-Each robot takes the first free place that it draws. In a crowd, a robot without a free draw takes the
-roomiest of its last draws; finally, all robots are parted as wedged bodies are.
+Each robot gets the first free place among its random draws. In a crowd, a robot without a free draw gets the
+roomiest of its last draws, and overlaps are relaxed in the end (`kswarms.model.kernel.relaxation`).
 """
 
 import math
@@ -18,9 +18,9 @@ from kswarms.model.kernel.arrays import PAIR, WORK
 from kswarms.model.kernel.relaxation import TOLERANCE, relax
 
 _FEW: Final = 16
-"""Places that a robot draws and tries one by one, which is fastest where there is room."""
+"""Number of places that are drawn first and tested one by one, which is fastest where there is room."""
 _BATCHES: Final = (256, 4096, 4096)
-"""Places that it then draws and tries at once."""
+"""Numbers of places that are then drawn and tested together."""
 
 
 def start_poses(
@@ -28,19 +28,7 @@ def start_poses(
 ) -> tuple[Floats, Floats]:
     """Draw positions (m), shape (n, 2), and headings (rad), shape (n,), from the streams of each robot.
 
-    Parameters
-    ----------
-    n, seed : int
-        Number of robots; seed of the run.
-    half, radius : float
-        Half the side of the arena; radius of a body (m).
-    clearance, wall_clearance : float
-        Minimum gap between two bodies, and to a wall (m).
-
-    Raises
-    ------
-    InputError
-        If there is no free place for a robot.
+    `half` is half the side of the arena; the clearances are the minimum gaps between bodies and to walls (m).
     """
     positions: list[tuple[float, float]] = []
     headings = np.empty(n)

@@ -39,11 +39,6 @@ def place_robots(game: Game, arena: Arena, seed: int, random: Random) -> tuple[C
     """Place the bodies of all robots, at rest; return Mesa's space and the state arrays.
 
     Both use the same array of positions. The space has no agents yet, and nothing draws from `random`.
-
-    Raises
-    ------
-    InputError
-        If there is no room for the robots.
     """
     half, body, parameters = arena.half, game.body, game.parameters
     positions, headings = start_poses(
@@ -57,13 +52,7 @@ def place_robots(game: Game, arena: Arena, seed: int, random: Random) -> tuple[C
 
 
 def make_robots(model: Host, game: Game, seed: int) -> list[Krembot]:
-    """Make the robots of all swarms, each with its policy and random streams.
-
-    Raises
-    ------
-    InputError
-        If a policy cannot be built.
-    """
+    """Make the robots of all swarms, each with its policy and random streams."""
     step = game.parameters.period * game.body.top_speed
     actions, swarms = game.action_set, len(game.swarms)
     robots: list[Krembot] = []

@@ -35,13 +35,7 @@ _AGENT_REPORTERS: Final[dict[str, Callable[[Any], Any]]] = {
 
 
 def parse_record(text: str) -> frozenset[str]:
-    """Parse a comma-separated list of `RECORDS`.
-
-    Raises
-    ------
-    InputError
-        If a name is unknown.
-    """
+    """Parse a comma-separated list of `RECORDS`."""
     if not isinstance(text, str):
         raise InputError("record", text, "must be a text")
     record = frozenset(name.strip() for name in text.split(",") if name.strip())
@@ -52,18 +46,11 @@ def parse_record(text: str) -> frozenset[str]:
 
 
 class Recorder:
-    """Records a game.
+    """Records a game; `record` is a subset of `RECORDS`.
 
     Model reporters: ``time`` and ``duration`` (s), ``ended``, and for swarm k the columns of the table
     ``runs``, such as ``pucks_k`` and ``t_p_k``; ``share_a_k`` and ``share_p_k``, its fractions of T(a), T(p).
     Agent reporters: swarm, state, puck, x, y and heading. Table: conflicts.
-
-    Parameters
-    ----------
-    state : GameState
-        State of the game.
-    record : frozenset of str
-        Subset of `RECORDS`.
 
     Attributes
     ----------
@@ -189,10 +176,7 @@ def _result_row(state: GameState, k: int, t_a: list[int], t_p: int) -> dict[str,
 
 
 def policy_rows(state: GameState) -> list[dict[str, Any]]:
-    """Return what the swarms learned: the columns of the table ``policies`` from ``swarm`` on.
-
-    There is one row per learning swarm, swarm learned about and action.
-    """
+    """Return one row per learning swarm, swarm learned about and action: the table ``policies``."""
     actions = state.game.action_set
     rows: list[dict[str, Any]] = []
     for k, members in enumerate(state.members):

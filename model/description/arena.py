@@ -23,7 +23,7 @@ _NEARER: Final = (0.96, 1.12)
 
 @dataclass(frozen=True)
 class Arena:
-    """Places in the arena; the origin is its middle.
+    """Places in the arena, which must overlap neither each other nor the walls. The origin is the middle.
 
     Attributes
     ----------
@@ -34,12 +34,7 @@ class Arena:
     bases : ndarray of float64, shape (K, 2)
         Centres of the home bases, S1 first (m).
     station_radius, base_radius : float
-        (m)
-
-    Raises
-    ------
-    InputError
-        If two places overlap, or a place and a wall.
+        Radii of a station and a base (m).
     """
 
     half: float
@@ -83,7 +78,7 @@ def build_arena(
     swarms : int
         Number of swarms K.
     station_radius, base_radius : float
-        (m)
+        Radii of a station and a base (m).
     seed : int
         Seed of the run; only random stations depend on it.
 

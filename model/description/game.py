@@ -93,15 +93,11 @@ class Game(GameFields):
         parameters, body = self.parameters, self.body
         fastest = max(max(swarm.drive, swarm.drive_action) for swarm in self.swarms)
         if parameters.period * body.top_speed * fastest > LONGEST_STEP * body.radius:
-            raise InputError(
-                "period",
-                parameters.period,
-                f"must be so short that a robot covers at most {LONGEST_STEP} of its radius",
-            )
+            rule = f"must be so short that a robot covers at most {LONGEST_STEP} of its radius"
+            raise InputError("period", parameters.period, rule)
         if (self.learning + self.duration) / parameters.period > MOST_PERIODS:
-            raise InputError(
-                "duration", self.duration, f"must be at most {MOST_PERIODS} periods, learning included"
-            )
+            rule = f"must be at most {MOST_PERIODS} periods, learning included"
+            raise InputError("duration", self.duration, rule)
         if body.radius + body.sensing_scale * parameters.wall_distance > self.side / 2:
             # Otherwise a robot could see walls in every direction and find no free heading.
             raise InputError("wall_distance", parameters.wall_distance, "must be less than half the arena")
@@ -122,9 +118,8 @@ class Game(GameFields):
         room = max(0.0, self.side - 2 * self.parameters.wall_clearance) ** 2
         if self.size * math.pi * (radius + self.parameters.clearance / 2) ** 2 > 0.7 * room:
             # Randomly placed discs jam when they cover about 80 % of the area.
-            raise InputError(
-                "n", self.size, f"robots of radius {radius} m do not fit in a square of {self.side} m"
-            )
+            rule = f"robots of radius {radius} m do not fit in a square of {self.side} m"
+            raise InputError("n", self.size, rule)
         self.arena(0)
 
     @property
@@ -138,27 +133,14 @@ class Game(GameFields):
         return self.actions or self.parameters.actions()
 
     def arena(self, seed: int) -> Arena:
-        """Return the arena; only random stations depend on the seed.
-
-        Raises
-        ------
-        InputError
-            If stations, bases and walls overlap.
-        """
-        parameters = self.parameters
-        radii = parameters.station_radius, parameters.base_radius
-        return build_arena(
-            self.layout, len(self.swarms), self.side, *radii, seed, stations=self.stations, bases=self.bases
-        )
+        """Return the arena; only random stations depend on the seed of the run."""
+        radii = self.parameters.station_radius, self.parameters.base_radius
+        places = self.stations, self.bases
+        return build_arena(self.layout, len(self.swarms), self.side, *radii, seed, *places)
 
 
 def apportion(n: int, shares: Sequence[int]) -> list[int]:
     """Divide `n` robots among swarms in proportion to shares ≥ 1, by largest remainder; ties go to the first.
-
-    Raises
-    ------
-    InputError
-        If there are more than `MOST_ROBOTS`.
 
     Examples
     --------

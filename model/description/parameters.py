@@ -114,18 +114,7 @@ PRESETS: Final = {
 
 
 def parse_parameters(text: str) -> Parameters:
-    """Parse the name of a preset, followed by changes of single parameters.
-
-    Parameters
-    ----------
-    text : str
-        For example ``"argos"`` or ``"fitted, friction=0.3, preempt=true"``.
-
-    Raises
-    ------
-    InputError
-        If a preset or parameter does not exist, or a value is not allowed.
-    """
+    """Parse the name of a preset, followed by changes of single parameters: ``"fitted, friction=0.3"``."""
     preset, *changes = (part.strip() for part in text.split(","))
     if preset not in PRESETS:
         raise InputError("parameters", preset, f"must begin with one of {', '.join(PRESETS)}")
@@ -140,13 +129,7 @@ def parse_parameters(text: str) -> Parameters:
 
 
 def text_of(parameters: Parameters) -> str:
-    """Return the shortest text that `parse_parameters` reads as these parameters.
-
-    Examples
-    --------
-    >>> text_of(Parameters(friction=0.3))
-    'fitted, friction=0.3'
-    """
+    """Return the shortest text that `parse_parameters` parses to these parameters."""
     texts = []
     for preset, defaults in PRESETS.items():
         changes = [f"{name}={value}" for name, value in parameters if value != getattr(defaults, name)]

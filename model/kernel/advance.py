@@ -25,26 +25,11 @@ _MOST_REFRESHES: Final = 50
 
 @compiled
 def advance(m: Memory, tick: int, until: int) -> tuple[int, int]:
-    """Advance from period `tick` to the first decision, but not beyond the start of `until`.
+    """Advance from control period `tick` to the first decision, but not beyond the start of `until`.
 
-    If the pick-ups and deposits of a period are done, its percepts follow even in period `until`.
-
-    Parameters
-    ----------
-    m : Memory
-        Written.
-    tick, until : int
-        Current control period; period of the next scheduled event.
-
-    Returns
-    -------
-    tick, size : int
-        Period reached, and the number of events in ``m.events``; without events, it is `until`.
-
-    Raises
-    ------
-    ValueError
-        If overlapping bodies cannot be parted.
+    Return the period reached, and the number of events in ``m.events``; without events, the period reached
+    is `until`. If the pick-ups and deposits of a period are done, its percepts follow even in period `until`.
+    Raise a ValueError if overlapping bodies cannot be parted.
     """
     positions, stage = m.positions, m.scalars["stage"]
     heading, turn_rate = m.robots["heading"], m.robots["turn_rate"]

@@ -101,32 +101,15 @@ LEG_DUE: Final = 7
 
 
 class Memory(NamedTuple):
-    """Arrays of one game with n robots, S stations and K swarms.
+    """Arrays of one game with n robots, S stations and K swarms."""
 
-    Attributes
-    ----------
-    positions : ndarray of float64, shape (n, 2)
-        Centres.
-    robots : ndarray of `kswarms.agents.robot.state.ROBOT`, shape (n,)
-    scalars : ndarray of `SCALARS`, shape (1,)
-    stations : ndarray of `STATION`, shape (S,)
-    bases : ndarray of float64, shape (K, 2)
-        Centres.
-    work : ndarray of `WORK`, shape (n,)
-    contacts : ndarray of `CONTACT`, shape (n, MAX_CONTACTS)
-    pairs : ndarray of `PAIR`, shape (capacity,)
-    cell_start : ndarray of int64, shape (cells² + 1,)
-        Start of each cell in `WORK` ``cell_robots``.
-    events : ndarray of `EVENT`, shape (n,)
-    """
-
-    positions: Floats
-    robots: Records
-    scalars: Records
-    stations: Records
-    bases: Floats
-    work: Records
-    contacts: Records
-    pairs: Records
-    cell_start: Integers
-    events: Records
+    positions: Floats  # float64, shape (n, 2): centres
+    robots: Records  # `kswarms.agents.robot.state.ROBOT`, shape (n,)
+    scalars: Records  # `SCALARS`, shape (1,)
+    stations: Records  # `STATION`, shape (S,)
+    bases: Floats  # float64, shape (K, 2): centres
+    work: Records  # `WORK`, shape (n,)
+    contacts: Records  # `CONTACT`, shape (n, MAX_CONTACTS)
+    pairs: Records  # `PAIR`, shape (capacity,)
+    cell_start: Integers  # int64, shape (cells² + 1,): start of each cell in the `WORK` field ``cell_robots``
+    events: Records  # `EVENT`, shape (n,)

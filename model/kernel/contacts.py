@@ -19,13 +19,7 @@ JAMMED: Final = "bodies overlap, and nothing parts them: there are too many, or 
 
 @compiled
 def translate(m: Memory) -> None:
-    """Move all bodies by one period.
-
-    Raises
-    ------
-    ValueError
-        If overlaps remain.
-    """
+    """Move all bodies by one period; raise a ValueError if overlaps remain."""
     positions, robots, work = m.positions, m.robots, m.work
     stride, forward_x, forward_y = robots["stride"], robots["forward_x"], robots["forward_y"]
     move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]

@@ -20,16 +20,7 @@ _MOST_CELLS: Final = 1024
 
 
 class Kernel:
-    """Moves the bodies of one game.
-
-    Parameters
-    ----------
-    game : Game
-        The game.
-    arena : Arena
-        Its arena.
-    states : RobotStates
-        State arrays of the robots; written.
+    """Moves the bodies of one game; writes the state arrays `states`.
 
     Attributes
     ----------

@@ -27,10 +27,7 @@ def cell_of(coordinate: float, half: float, cells: int) -> int:
 def refresh(m: Memory) -> bool:
     """List cells and pairs if a body has moved too far since the last listing; return whether it did.
 
-    Raises
-    ------
-    ValueError
-        If bodies overlap so much that the pairs do not fit in ``m.pairs``.
+    Raise a ValueError if bodies overlap so much that the pairs do not fit in ``m.pairs``.
     """
     positions, origin_x, origin_y = m.positions, m.work["origin_x"], m.work["origin_y"]
     limit = 0.25 * m.scalars["skin"][0] * m.scalars["skin"][0]
@@ -106,16 +103,10 @@ def _list_pairs(m: Memory, cells: int) -> int:
 
 @compiled
 def within(m: Memory, x: float, y: float, distance: float) -> int:
-    """Collect the robots of all cells that a disc touches in ``found``; return their number.
+    """List the robots of all cells that a disc touches in ``m.work["found"]``; return their number.
 
-    They include all robots that were in the disc at the last listing.
-
-    Parameters
-    ----------
-    m : Memory
-        Written: ``found``.
-    x, y, distance : float
-        Centre and radius of the disc (m).
+    The disc has its centre at (x, y) and the radius `distance` (m). All robots that were in the disc at the
+    last listing are included.
     """
     cell_start, cell_robots, found = m.cell_start, m.work["cell_robots"], m.work["found"]
     half = m.scalars["half"][0]

@@ -1,15 +1,13 @@
 """Short constructors of swarms, learners and curves for the catalogue."""
 
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any
 
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.learning.rewards import REWARDS
 from kswarms.agents.learning.selection_rules import RULES
 from kswarms.scenarios.description.condition import Condition, SwarmRule
 from kswarms.scenarios.description.scenario import LEARNING
-
-_LEARNS_BY: Final = {"reward": "wlu", "rule": "ucb"}
 
 
 def swarm(policy: str, **rule: Any) -> SwarmRule:
@@ -24,7 +22,7 @@ def fast(policy: str, **rule: Any) -> SwarmRule:
 
 def learner(about: str = "inter-learner", reward: str = "wlu", rule: str = "ucb", **rest: Any) -> SwarmRule:
     """Return a swarm of learners; `about` is the name of their policy, `rest` are its other fields."""
-    return swarm(_call(about, _LEARNS_BY, {"reward": reward, "rule": rule}), **rest)
+    return swarm(_call(about, {"reward": "wlu", "rule": "ucb"}, {"reward": reward, "rule": rule}), **rest)
 
 
 def reward_of(name: str = "wlu", **arguments: Any) -> str:
@@ -44,15 +42,11 @@ def curve(*swarms: SwarmRule, **world: Any) -> tuple[Condition, ...]:
 
 def curves(swarms: Mapping[str, tuple[SwarmRule, ...]], **world: Any) -> tuple[Condition, ...]:
     """Return a condition for each name, with a learning phase if a swarm learns."""
-    return tuple(
-        Condition(
-            name=name,
-            swarms=rules,
-            learning=LEARNING if any("learner" in rule.policy for rule in rules) else 0.0,
-            **world,
-        )
-        for name, rules in swarms.items()
-    )
+    conditions = []
+    for name, rules in swarms.items():
+        learning = LEARNING if any("learner" in rule.policy for rule in rules) else 0.0
+        conditions.append(Condition(name=name, swarms=rules, learning=learning, **world))
+    return tuple(conditions)
 
 
 def _call(name: str, defaults: Mapping[str, Any], arguments: Mapping[str, Any]) -> str:

@@ -17,13 +17,7 @@ USUAL_N: Final = 20
 
 
 def select_scenarios(ids: Iterable[str]) -> list[Scenario]:
-    """Return the scenarios of ids and ``.toml`` files, each once; a table stands for all its scenarios.
-
-    Raises
-    ------
-    InputError
-        If an id or file does not exist, or two different scenarios have the same id.
-    """
+    """Return the scenarios of ids and ``.toml`` files, each once; a table stands for all its scenarios."""
     found: dict[str, Scenario] = {}
     for name in ids:
         scenarios = read_scenarios(Path(name)) if name.endswith(".toml") else _from_catalogue(name)
@@ -46,22 +40,9 @@ def with_densities_and_seeds(
 ) -> tuple[list[Scenario], list[str]]:
     """Return scenarios with other densities or seeds, and the ids of scenarios that are left out.
 
-    Parameters
-    ----------
-    scenarios : iterable of Scenario
-        The scenarios.
-    densities : sequence of int
-        Numbers of robots; if empty, each scenario keeps its own.
-    seeds : int, optional
-        Number of games per density; by default, each scenario keeps its own.
-    suitable_only : bool
-        Whether densities that do not suit a scenario are dropped for it instead of refused. A scenario
-        without a suitable density is left out.
-
-    Raises
-    ------
-    InputError
-        If a density or the number of seeds is not allowed, or no scenario remains.
+    Without densities (numbers of robots) or seeds (games per density), each scenario keeps its own. With
+    `suitable_only`, densities that do not suit a scenario are dropped for it instead of refused, and a
+    scenario without a suitable density is left out.
     """
     playable, left_out = [], []
     for scenario in scenarios:
@@ -69,12 +50,9 @@ def with_densities_and_seeds(
         if densities and not suitable:
             left_out.append(scenario.id)
             continue
-        changes = {
-            "densities": suitable or scenario.densities,
-            "seeds": scenario.seeds if seeds is None else seeds,
-        }
+        games = scenario.seeds if seeds is None else seeds
         try:
-            playable.append(scenario.replace(**changes))
+            playable.append(scenario.replace(densities=suitable or scenario.densities, seeds=games))
         except InputError as error:
             raise InputError(error.field, error.value, f"{error.allowed} ({scenario.id})") from None
     if not playable:

@@ -66,13 +66,7 @@ class Condition(GameFields):
         return dict(self.grid_point)
 
     def sizes(self, n: int) -> list[int]:
-        """Return the size of each swarm if there are `n` robots.
-
-        Raises
-        ------
-        InputError
-            If `n` does not suit the proportions or leaves a swarm empty.
-        """
+        """Return the size of each swarm if there are `n` robots; `n` must suit the proportions."""
         shares = [swarm.share for swarm in self.swarms]
         step = self.multiple_of or sum(shares) // math.gcd(*shares)
         sizes = apportion(n, shares) if n > 0 else [0]
@@ -82,13 +76,7 @@ class Condition(GameFields):
         return sizes
 
     def game(self, n: int) -> Game:
-        """Return the game of `n` robots.
-
-        Raises
-        ------
-        InputError
-            If the game is not allowed.
-        """
+        """Return the game of `n` robots."""
         swarms = tuple(
             Swarm(policy=rule.policy, size=size, drive=rule.drive, drive_action=rule.drive_action)
             for rule, size in zip(self.swarms, self.sizes(n), strict=True)

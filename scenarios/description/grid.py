@@ -21,21 +21,11 @@ _LEARNING: Final = ("reward", "rule")
 
 
 def expand_grid(conditions: Iterable[Condition], grid: Grid) -> tuple[Condition, ...]:
-    """Return a condition for each condition and each point of the grid.
+    """Return a condition for each condition and each point of the grid; points of the grid are kept.
 
-    Parameters
-    ----------
-    conditions : iterable of Condition
-        Conditions that already are points of the grid stay as they are.
-    grid : mapping of str to tuple
-        Values by field. A field is ``side``, ``duration`` or another one of a condition;
-        ``parameters.friction``; ``reward``, ``rule``, ``reward.delta`` or ``rule.gamma``, of all learners;
-        or one of a swarm: ``S1.drive``, ``S2.policy``, ``S2.reward.delta``.
-
-    Raises
-    ------
-    InputError
-        If a field does not exist, a value is not allowed, or there are too many points.
+    Fields are those of a condition, such as ``side``; ``parameters.friction``; ``reward``, ``rule``,
+    ``reward.delta`` and ``rule.gamma`` of all learners; and those of a swarm, such as ``S1.drive``,
+    ``S2.policy`` and ``S2.reward.delta``.
     """
     conditions = tuple(conditions)
     for field, values in grid.items():
@@ -57,10 +47,10 @@ def expand_grid(conditions: Iterable[Condition], grid: Grid) -> tuple[Condition,
 def collapse_grid(conditions: tuple[Condition, ...], grid: Grid) -> tuple[Condition, ...]:
     """Return the fewest conditions from which `expand_grid` makes these again."""
     first = tuple((field, values[0]) for field, values in grid.items())
-    kept = (condition for condition in conditions if condition.grid_point == first)
     bases = tuple(
         condition.replace(name=condition.name.removesuffix(_label(first)).removesuffix(", "), grid_point=())
-        for condition in kept
+        for condition in conditions
+        if condition.grid_point == first
     )
     return bases if expand_grid(bases, grid) == conditions else conditions
 

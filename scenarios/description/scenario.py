@@ -72,13 +72,7 @@ class Scenario(Checked):
         return self
 
     def game(self, condition: str, n: int) -> Game:
-        """Return the game of `n` robots under the condition of this name.
-
-        Raises
-        ------
-        InputError
-            If the condition does not exist, or `n` does not suit its proportions.
-        """
+        """Return the game of `n` robots under the condition of this name."""
         by_name = {each.name: each for each in self.conditions}
         if condition not in by_name:
             raise InputError("condition", condition, f"must be one of {', '.join(map(repr, by_name))}")

@@ -9,13 +9,7 @@ def split_words(text: str) -> list[str]:
 
 
 def parse_integers(field: str, text: str | None) -> tuple[int, ...]:
-    """Return the whole numbers between commas, ascending, each once; none for None.
-
-    Raises
-    ------
-    InputError
-        If a word is not a whole number.
-    """
+    """Return the integers between commas, ascending, each once; none for None."""
     if text is None:
         return ()
     try:

@@ -24,9 +24,7 @@ def read_scenarios(path: Path) -> list[Scenario]:
     if not isinstance(scenarios, list):
         return [_make_scenario(path.name, content)]
     if len(content) > 1 or not scenarios:
-        raise InputError(
-            f"{path.name}: scenarios", scenarios, "must not be empty, and the only entry"
-        )
+        raise InputError(f"{path.name}: scenarios", scenarios, "must not be empty, and the only entry")
     return [_make_scenario(f"{path.name}: scenarios.{k}", each) for k, each in enumerate(scenarios)]
 
 
