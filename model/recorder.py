@@ -48,8 +48,10 @@ def parse_record(text: str) -> frozenset[str]:
 class Recorder:
     """Records a game; `record` is a subset of `RECORDS`.
 
-    Model reporters: ``time`` and ``duration`` (s), ``ended``, and for swarm k the columns of the table
-    ``runs``, such as ``pucks_k`` and ``t_p_k``; ``share_a_k`` and ``share_p_k``, its fractions of T(a), T(p).
+    Model reporters: ``time`` (s since the start), ``game_time`` (s of the measured game), ``ended``, and for
+    swarm k the columns of the table ``runs``, such as ``pucks_k`` and ``t_p_k``; ``share_a_k`` and
+    ``share_p_k``, its fractions of T(a), T(p). None has the name of an argument of `ForagingModel`, because
+    `mesa.batch_run` puts both into one row.
     Agent reporters: swarm, state, puck, x, y and heading. Table: conflicts.
 
     Attributes
@@ -142,7 +144,7 @@ class Recorder:
 
 def _sample_row(state: GameState) -> dict[str, Any]:
     """Return the values of all model reporters."""
-    sample = {"time": state.time, "duration": state.duration, "ended": state.ended}
+    sample = {"time": state.time, "game_time": state.duration, "ended": state.ended}
     for k in range(len(state.members)):
         t_a, t_p = state.times(k)
         share = float(share_of_time(sum(t_a), sum(t_a), t_p))

@@ -10,17 +10,19 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.results.tables import check_columns
 
 _POINT: Final = ("run", "scenario", "condition", "n", "seed")
-_OF_GAME: Final = ("duration", "ended")
-_OF_SWARM: Final = [name for name in names("runs") if name not in {*_POINT, *_OF_GAME, "swarm"}]
-_MESA: Final = {"RunId", "iteration", "Step", "AgentID", "time"}
+_OF_SWARM: Final = [name for name in names("runs") if name not in {*_POINT, "swarm", "duration", "ended"}]
+_MESA: Final = {"RunId", "iteration", "Step", "AgentID"}
+_MODEL_REPORTERS: Final = {"time", "game_time", "ended"}
 _AGENT_REPORTERS: Final = {"swarm", "state", "puck", "x", "y", "heading"}
-_NO_PARAMETERS: Final = {*_POINT, *_OF_GAME, *_MESA, *_AGENT_REPORTERS}
+_NO_PARAMETERS: Final = {*_POINT, *_MESA, *_MODEL_REPORTERS, *_AGENT_REPORTERS}
 
 
 class PlayedModel(Protocol):
     """A model at the end of its game, such as `kswarms.model.foraging.ForagingModel`."""
 
     seed: int
+    game: Any
+    """Description of the game, with its ``duration`` (s)."""
 
     def results(self) -> list[dict[str, Any]]:
         """Return one row per swarm: the columns of the table ``runs`` from ``swarm`` on."""
@@ -74,17 +76,17 @@ def _end_of_game(model: PlayedModel) -> dict[str, Any]:
     """Return the end of a model's game in the form of a row of `mesa.batch_run`."""
     swarms = model.results()
     game = {f"{name}_{swarm['swarm']}": swarm[name] for swarm in swarms for name in _OF_SWARM}
-    game |= {name: swarms[0][name] for name in _OF_GAME}
-    return game | {"seed": model.seed, "policies": ",".join(swarm["policy"] for swarm in swarms)}
+    game |= {"game_time": swarms[0]["duration"], "ended": swarms[0]["ended"], "seed": model.seed}
+    return game | {"policies": ",".join(swarm["policy"] for swarm in swarms), "duration": model.game.duration}
 
 
 def _swarms(game: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return the values of each swarm at the end of a game."""
+    """Return the values of each swarm at the end of a game; ``duration`` is the time that was played."""
     if "ended" not in game or "pucks_1" not in game:
         raise InputError("source", sorted(map(str, game)), 'must have model reporters (record="model")')
     if not game["ended"]:
         raise InputError("ended", game["ended"], "must be given: a game was stopped before its end")
-    of_game = {name: game[name] for name in _OF_GAME}
+    of_game = {"duration": game["game_time"], "ended": game["ended"]}
     swarms: list[dict[str, Any]] = []
     # A data frame has NaN for the swarms that only other games have.
     while pd.notna(game.get(f"pucks_{len(swarms) + 1}")):
@@ -98,8 +100,6 @@ def _conditions(games: Sequence[Mapping[str, Any]], by: Sequence[str] | None) ->
     if by is None:
         reported = {f"{name}_{k}" for name in (*_OF_SWARM, "share_a", "share_p") for k in range(1, 100)}
         candidates = [name for name in games[0] if name not in _NO_PARAMETERS | reported]
-        if all(game.get("ended") == "time" for game in games):
-            candidates.append("duration")
         by = [name for name in candidates if len({_text(game.get(name)) for game in games}) > 1]
     return [", ".join(f"{name}={_text(game.get(name))}" for name in by) for game in games]
 

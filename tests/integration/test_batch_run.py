@@ -91,8 +91,8 @@ def test_the_last_row_is_the_state_at_the_end(tmp_path: Path) -> None:
     for row in rows:
         for result in played(row).results():
             k = result.pop("swarm")
-            of_game = {name: result.pop(name) for name in ("duration", "ended")}
-            assert {name: row[name] for name in of_game} == of_game
+            assert (row["game_time"], row["ended"]) == (result.pop("duration"), result.pop("ended"))
+            assert row["duration"] == 47.0  # the argument
             assert {name: row[f"{name}_{k}"] for name in result} == result
             time_in_action = result["t_a_intra"] + result["t_a_inter"]
             share = time_in_action / (time_in_action + result["t_p"])

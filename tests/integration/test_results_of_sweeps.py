@@ -62,13 +62,26 @@ def test_rows_samples_and_models_give_the_same_runs() -> None:
 def test_conditions_are_the_parameters_that_differ() -> None:
     rows = sweep(seed=0, n=4, side=[2.0, 3.0], duration=[10.0, 20.0], policies=["avoid", "avoid,avoid"])
     runs = read_results(pd.DataFrame(rows)).runs
-    assert runs["condition"].iloc[0] == "policies=avoid, side=2.0, duration=10.0"
+    assert runs["condition"].iloc[0] == "policies=avoid, duration=10.0, side=2.0"
     assert runs["condition"].nunique() == 8
     assert len(runs) == 4 * 1 + 4 * 2
     named = read_results(rows[:1], by=["side"]).runs
     assert set(named["condition"]) == {"side=2.0"}
     with pytest.raises(InputError, match=r"by=.*two games with one condition, N and seed"):
         read_results(rows, by=["side"])
+
+
+def test_a_sweep_of_durations_keeps_them_when_pucks_end_the_games() -> None:
+    games = {"duration": [200.0, 300.0], "puck_limit": 1, "policies": "avoid,avoid", "n": 8, "seed": 0}
+    rows = sweep(**games)
+    assert {row["duration"] for row in rows} == {200.0, 300.0}
+    models = [ForagingModel(**{**games, "duration": duration}) for duration in (200.0, 300.0)]
+    for model in models:
+        model.play()
+    for runs in (read_results(rows).runs, read_results(models).runs):
+        assert set(runs["condition"]) == {"duration=200.0", "duration=300.0"}
+        assert set(runs["ended"]) == {"pucks"}
+        assert runs["duration"].max() < 200.0
 
 
 def test_unusable_games_are_refused() -> None:

@@ -99,7 +99,7 @@ def test_the_models_frame() -> None:
         "conflicts_inter",
     }
     of_swarms = {f"{kind}_{k}" for kind in of_swarm for k in (1, 2, 3)}
-    assert set(frame.columns) == {"time", "duration", "ended"} | of_swarms
+    assert set(frame.columns) == {"time", "game_time", "ended"} | of_swarms
     assert frame["time"].tolist() == [0, 10, 20, 30, 40, 50, 60] == model.sample_times
     start, end = frame.iloc[0], frame.iloc[-1]
     assert [start[f"{kind}_1"] for kind in kinds] == [0, 0, 0, 1]
