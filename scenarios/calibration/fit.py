@@ -21,7 +21,6 @@ from kswarms.agents.common.arrays import Floats
 from kswarms.agents.common.atomic_files import remove_temporary_files
 from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.statistics.intervals import bootstrap_interval
 from kswarms.scenarios.calibration.games import START, Candidate, Cell, texts_of, to_candidate, to_place
 from kswarms.scenarios.calibration.shares import Play, Shares
 from kswarms.scenarios.description.scenario import DENSITIES
@@ -33,42 +32,25 @@ VALIDATION_SEED: Final = 1000
 """First seed of the validation. The seeds of the catalogue, from 0, stay unused, to judge the result."""
 FIT_SEED: Final = 10_000
 """First seed of the first generation."""
-
 _SHARES: Final = "shares.json"
 TRACE: Final = "calibration.json"
 """File of the trace of a fit."""
 
+Statistic = Callable[[Floats], Floats]
+Intervals = Callable[[Floats, Statistic], tuple[Floats, Floats, Floats]]
+"""Returns a statistic of the mean over seeds with its interval, as
+`kswarms.analysis.statistics.intervals.bootstrap_intervals` does."""
+
 
 class Setup(Checked):
-    """Settings of a fit.
-
-    Attributes
-    ----------
-    free : tuple of str
-        The fitted parameters, at least two of `START`; the others keep their start values.
-    densities : tuple of int
-        The fitted rows of Table 6.1, by N.
-    seeds : int
-        Games for each cell and candidate.
-    generations : int
-        Generations of the search.
-    population : int
-        Candidates in a generation; 0 for the usual number, 4 + 3 ln(parameters).
-    validation_seeds : int
-        Games for each cell in the validation, at least 6: fewer have no interval.
-
-    Raises
-    ------
-    InputError
-        If a value is invalid.
-    """
+    """Settings of a fit. Parameters that are not fitted keep their start values."""
 
     free: tuple[str, ...] = tuple(START)
-    densities: tuple[int, ...] = Field(DENSITIES, min_length=1)
-    seeds: int = Field(4, ge=1, le=1000)
+    densities: tuple[int, ...] = Field(DENSITIES, min_length=1)  # the fitted rows of Table 6.1, by N
+    seeds: int = Field(4, ge=1, le=1000)  # games for each cell and candidate
     generations: int = Field(25, ge=1, le=10_000)
-    population: int = Field(0, ge=0, le=10_000)
-    validation_seeds: int = Field(20, ge=6, le=FIT_SEED - VALIDATION_SEED)
+    population: int = Field(0, ge=0, le=10_000)  # 0: the usual number, 4 + 3 ln(parameters)
+    validation_seeds: int = Field(20, ge=6, le=FIT_SEED - VALIDATION_SEED)  # fewer than 6 have no interval
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -88,18 +70,10 @@ class Setup(Checked):
 
 
 def error_of(shares: Floats, target: Floats) -> Floats:
-    """Return the mean absolute error over cells (percentage points).
+    """Return the mean absolute error over cells (percentage points), shape (…).
 
-    Parameters
-    ----------
-    shares : ndarray of float64, shape (…, cells)
-        Share of learners that learned to attack, mean over seeds.
-    target : ndarray of float64, shape (cells,)
-        Published shares (percent).
-
-    Returns
-    -------
-    ndarray of float64, shape (…)
+    `shares`, shape (…, cells), are the learners that learned to attack, a mean over seeds; `target`, shape
+    (cells,), are the published shares (percent).
     """
     return np.asarray(np.abs(100.0 * shares - target).mean(axis=-1))
 
@@ -108,6 +82,7 @@ def calibrate(
     setup: Setup,
     target: Mapping[Cell, float],
     play: Play,
+    intervals: Intervals,
     out: Path,
     fresh: bool = False,
     report: Callable[[str], None] = lambda _: None,
@@ -116,12 +91,8 @@ def calibrate(
 
     Parameters
     ----------
-    setup : Setup
-        Settings.
     target : mapping of (str, int) to float
         Table 6.1 (percent).
-    play : Play
-        Plays runs.
     out : Path
         Directory of ``shares.json``, from which a search of the same setup resumes (also with more
         generations), and of ``calibration.json``, the returned trace.
@@ -137,11 +108,6 @@ def calibrate(
         ``errors`` (percentage points), and the ``mean`` (a candidate) and ``spread`` of the search after it;
         ``validation``, as `validate` returns it; ``result``: the texts ``parameters`` and ``rule``, and
         ``beats_start``.
-
-    Raises
-    ------
-    InputError
-        If a density is not in the table, or the directory is not usable.
     """
     rows = sorted({n for _, n in target})
     for n in setup.densities:
@@ -161,7 +127,7 @@ def calibrate(
         )
     seeds = range(VALIDATION_SEED, VALIDATION_SEED + setup.validation_seeds)
     of_start, of_fitted = shares.measure([start, fitted], list(target), seeds)
-    trace["validation"] = validate(of_start, of_fitted, np.array(list(target.values())))
+    trace["validation"] = validate(of_start, of_fitted, np.array(list(target.values())), intervals)
     parameters, rule = texts_of(fitted)
     beaten = trace["validation"]["gain_low"] > 0
     trace["result"] = {"parameters": parameters, "rule": rule, "beats_start": beaten}
@@ -227,33 +193,18 @@ def _search(
         }
 
 
-def validate(start: Floats, fitted: Floats, target: Floats) -> dict[str, float]:
-    """Compare two candidates on the same seeds.
+def validate(start: Floats, fitted: Floats, target: Floats, intervals: Intervals) -> dict[str, float]:
+    """Compare the errors of two candidates on the same seeds (percentage points).
 
-    Parameters
-    ----------
-    start, fitted : ndarray of float64, shape (cells, seeds)
-        Shares of learners that learned to attack.
-    target : ndarray of float64, shape (cells,)
-        Published shares (percent).
-
-    Returns
-    -------
-    dict
-        ``start_error``, ``fitted_error`` and their difference ``gain`` with its 95 % interval over the seeds,
-        ``gain_low`` to ``gain_high`` (percentage points).
+    `start` and `fitted` are shares of learners that learned to attack, shape (cells, seeds); `target`, shape
+    (cells,), are the published shares (percent). The result has ``start_error``, ``fitted_error`` and their
+    difference ``gain`` with its 95 % interval over the seeds, ``gain_low`` to ``gain_high``.
     """
     both = np.stack([start, fitted]).transpose(2, 0, 1)  # seeds, candidates, cells
 
     def gains(means: Floats) -> Floats:
         return error_of(means[:, 0], target) - error_of(means[:, 1], target)
 
-    gain = bootstrap_interval(both, gains)
-    start_error, fitted_error = error_of(both.mean(axis=0), target)
-    return {
-        "start_error": float(start_error),
-        "fitted_error": float(fitted_error),
-        "gain": gain.estimate,
-        "gain_low": gain.low,
-        "gain_high": gain.high,
-    }
+    values = (*error_of(both.mean(axis=0), target), *intervals(both, gains))
+    names = ("start_error", "fitted_error", "gain", "gain_low", "gain_high")
+    return {name: float(value) for name, value in zip(names, values, strict=True)}

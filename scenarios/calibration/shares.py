@@ -25,21 +25,10 @@ _SAVE_EVERY: Final = 5.0
 
 
 class Shares:
-    """The shares measured so far.
+    """The shares measured so far, stored in a JSON file.
 
-    Parameters
-    ----------
-    path : Path
-        JSON file. Its shares are used if they have the same setup.
-    setup : dict
-        Settings that all shares in the file have in common.
-    play : Play
-        Plays the missing runs.
-
-    Raises
-    ------
-    InputError
-        If the file has another setup or is not a file of shares.
+    `setup` are the settings that all shares of the file have in common. A file of another setup or of
+    something else is refused. `play` plays the missing runs.
     """
 
     def __init__(self, path: Path, setup: dict[str, Any], play: Play) -> None:

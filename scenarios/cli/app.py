@@ -14,6 +14,7 @@ from typer.core import TyperGroup
 
 from kswarms import __version__
 from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.runs.errors import RunError
 
 INTERRUPTED: Final = 130
 
@@ -34,7 +35,7 @@ COMMANDS: Final = {
 
 
 class LazyGroup(TyperGroup):
-    """Group of commands that imports a command when it is called; help and completion need only its name."""
+    """Group of commands. It imports a command when it is called; help and completion need only its name."""
 
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
         """Return name, command and remaining arguments."""
@@ -67,17 +68,9 @@ def main() -> None:
 
 
 def invoke(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line.
+    """Run the command line and return its exit status, as `--help` explains it.
 
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        The words after ``kswarms``; the arguments of this process by default.
-
-    Returns
-    -------
-    int
-        Exit status: 0 done, 1 failed, 2 bad input, 130 interrupted.
+    `arguments` are the words after ``kswarms``; the default is the arguments of this process.
     """
     try:
         words = sys.argv[1:] if arguments is None else arguments
@@ -86,17 +79,13 @@ def invoke(arguments: Sequence[str] | None = None) -> int:
         return _print_error(str(error), 2)
     except OSError as error:
         return _print_error(str(error), 1)
+    except RunError as error:
+        typer.echo(error.trace, err=True)
+        return _print_error(str(error), 1)
     except typer.BadParameter as error:
         return _print_error(_describe(error), 2)
     except typer.TyperException as error:  # an unknown command or option, for example
         return _print_error(error.format_message(), error.exit_code)
-    except RuntimeError as error:
-        from kswarms.scenarios.runs.outcome import RunError
-
-        if not isinstance(error, RunError):
-            raise
-        typer.echo(error.trace, err=True)  # an error of the program, not of its input
-        return _print_error(str(error), 1)
     if code == INTERRUPTED:
         return _print_error("interrupted", code)
     return code or 0

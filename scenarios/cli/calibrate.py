@@ -18,8 +18,7 @@ def calibrate(
     free: Annotated[
         str | None,
         typer.Option(
-            metavar="NAME,...",
-            help="Parameters to fit, at least two; docs/calibration.md lists them. [default: all]",
+            metavar="NAME,...", help="At least two parameters of docs/calibration.md. [default: all]"
         ),
     ] = None,
     densities: Annotated[
@@ -33,15 +32,11 @@ def calibrate(
     population: Annotated[
         int, typer.Option(help="Candidates in a generation, at least 4; 0 for the usual number.")
     ] = 0,
-    validation_seeds: Annotated[
-        int, typer.Option(help="Games for each cell in the validation, at least 6.")
-    ] = 20,
+    validation_seeds: Annotated[int, typer.Option(help="Games for each cell to validate, at least 6.")] = 20,
     jobs: Jobs = CPUS,
     out: Annotated[
         Path,
-        typer.Option(
-            parser=parse_directory, metavar="DIR", help="Output directory; an interrupted fit is resumed."
-        ),
+        typer.Option(parser=parse_directory, metavar="DIR", help="Output directory; a fit in it is resumed."),
     ] = Path("calibration"),
     fresh: Annotated[bool, typer.Option("--fresh", help="Delete the fit in DIR and start again.")] = False,
 ) -> None:
@@ -50,6 +45,7 @@ def calibrate(
     Example: kswarms calibrate --free friction,gamma --densities 16,30,50 --seeds 2
     """
     from kswarms.analysis.results.published import table_6_1
+    from kswarms.analysis.statistics.intervals import bootstrap_intervals
     from kswarms.scenarios.calibration import fit
 
     options: dict[str, Any] = {"seeds": seeds, "generations": generations, "population": population}
@@ -64,9 +60,8 @@ def calibrate(
         for opponent, column in (("avoid", "fig_6_4a_attack_pct"), ("attack", "fig_6_4b_attack_pct"))
         for n, percent in zip(table["n"], table[column], strict=True)
     }
-    trace = fit.calibrate(
-        setup, target, partial(_play, jobs), out, fresh, report=partial(typer.echo, err=True)
-    )
+    report = partial(typer.echo, err=True)
+    trace = fit.calibrate(setup, target, partial(_play, jobs), bootstrap_intervals, out, fresh, report)
     for line in fit.summary(trace):
         typer.echo(line)
     typer.echo(f"trace:      {out / fit.TRACE}")

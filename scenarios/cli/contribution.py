@@ -17,25 +17,18 @@ def contribution(
     wanted: Annotated[
         str,
         typer.Argument(
-            metavar="ID",
-            help="Scenario of `kswarms list`, or my.toml with one scenario.",
-            autocompletion=complete_scenario_ids,
+            metavar="ID", help="Scenario of `kswarms list`, or my.toml.", autocompletion=complete_scenario_ids
         ),
     ],
     condition: Annotated[
-        str | None,
-        typer.Option(metavar="NAME", help="Condition of the scenario, required if it has several."),
+        str | None, typer.Option(metavar="NAME", help="Condition, required if the scenario has several.")
     ] = None,
     n: Annotated[int, typer.Option(help="Robots in all, a multiple of the sum of the shares.")] = 26,
     robots: Annotated[
-        str | None,
-        typer.Option(metavar="LIST", help="Robots, from 0, and swarms: 3,7 or S2. [default: all]"),
+        str | None, typer.Option(metavar="LIST", help="Robots, from 0, or swarms: 3,7 or S2. [default: all]")
     ] = None,
     seeds: Annotated[
-        int,
-        typer.Option(
-            min=1, max=MOST_SEEDS, help="Games with all robots; each is also played without each robot."
-        ),
+        int, typer.Option(min=1, max=MOST_SEEDS, help="Games; each is also played without each robot.")
     ] = 20,
     first_seed: FirstSeed = 0,
     absent_from: Annotated[

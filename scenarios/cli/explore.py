@@ -13,9 +13,7 @@ def explore(
     what: Watched = None,
     run: RunDigest = "",
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 for any free port.")] = 8765,
-    no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="Print the address only; do not open a browser.")
-    ] = False,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Do not open a browser.")] = False,
 ) -> None:
     """Open a page to watch, change and inspect games. Ctrl-C ends it.
 

@@ -26,22 +26,19 @@ def film(
     n: Robots = None,
     seed: Seed = None,
     begin: Annotated[
-        float,
-        typer.Option("--from", help="First instant (s of the measured game), negative during learning."),
+        float, typer.Option("--from", help="First instant (s of the measured game, negative in learning).")
     ] = 0.0,
-    end: Annotated[
-        float | None, typer.Option("--to", help="Last instant (s). [default: the end of the game]")
-    ] = None,
+    end: Annotated[float | None, typer.Option("--to", help="Last instant (s). [default: the end]")] = None,
     speed: Annotated[float, typer.Option(help="Seconds of the game per second of film, above 0.")] = 10.0,
     fps: Annotated[int, typer.Option(min=1, max=60, help="Frames per second.")] = 20,
     size: Annotated[int, typer.Option(min=64, max=4096, help="Width of a frame (pixels).")] = 720,
     sheet: Annotated[
         int | None,
-        typer.Option(metavar="K", min=1, max=100, help="Write a contact sheet (PNG) of K instants instead."),
+        typer.Option(metavar="K", min=1, max=100, help="Write a contact sheet of K instants (PNG)."),
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="An .mp4 or .gif; with --sheet a .png. [default: by the game]"),
+        typer.Option(metavar="FILE", help="Film (.mp4, .gif) or sheet (.png). [default: by the game]"),
     ] = None,
 ) -> None:
     """Film a game of a scenario, or a run of a results directory, from above.

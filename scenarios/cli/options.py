@@ -39,22 +39,14 @@ def parse_directory(text: str) -> Path:
 
 
 _WATCHED: Final = "Scenario or table of `kswarms list`, or my.toml; with --run, a results directory."
-Watched = Annotated[
-    str | None,
-    typer.Argument(
-        metavar="ID|DIR", help=f"{_WATCHED} [default: {FIRST_SCENARIO}]", autocompletion=complete_ids
-    ),
-]
+_FIRST: Final = f"{_WATCHED} [default: {FIRST_SCENARIO}]"
+Watched = Annotated[str | None, typer.Argument(metavar="ID|DIR", help=_FIRST, autocompletion=complete_ids)]
 RunDigest = Annotated[
     str, typer.Option(metavar="DIGEST", help="Run of DIR to play again: column `run` of its tables.")
 ]
 ConditionName = Annotated[
     str | None,
-    typer.Option(
-        "--condition",
-        metavar="NAME",
-        help="Condition of the scenario; see `kswarms show`. [default: the first]",
-    ),
+    typer.Option("--condition", metavar="NAME", help="Condition; see `kswarms show`. [default: the first]"),
 ]
 Robots = Annotated[
     int | None,

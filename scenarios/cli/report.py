@@ -21,13 +21,10 @@ def report(
     ] = None,
     files: Annotated[
         Path | None,
-        typer.Option(
-            metavar="DIR", help="Also write figures as PNG and SVG, and tables as CSV, Markdown and HTML."
-        ),
+        typer.Option(metavar="DIR", help="Also write figures (PNG, SVG) and tables (CSV, Markdown, HTML)."),
     ] = None,
     findings: Annotated[
-        Path | None,
-        typer.Option(metavar="TOML", help="Your own findings, judged together with those of the thesis."),
+        Path | None, typer.Option(metavar="TOML", help="Your findings, judged with those of the thesis.")
     ] = None,
 ) -> None:
     """Write figures, tables and verdicts of all results into one HTML file that needs no network.

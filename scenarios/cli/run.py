@@ -25,7 +25,7 @@ def run(
         list[str] | None,
         typer.Argument(
             metavar="ID",
-            help="Scenarios or tables of `kswarms list`, or files such as my.toml.",
+            help="Scenarios or tables of `kswarms list`, or my.toml.",
             autocompletion=complete_ids,
         ),
     ] = None,
@@ -47,13 +47,13 @@ def run(
     scheduler: Annotated[
         str | None,
         typer.Option(
-            metavar="ADDRESS", help="Play on the Dask cluster of this scheduler, for example tcp://host:8786."
+            metavar="ADDRESS", help="Dask scheduler that plays the runs, for example tcp://host:8786."
         ),
     ] = None,
     out: Annotated[
         Path,
         typer.Option(
-            parser=parse_directory, metavar="DIR", help="Results directory; an existing study is resumed."
+            parser=parse_directory, metavar="DIR", help="Results directory; a study in it is resumed."
         ),
     ] = Path("results"),
     record: Annotated[

@@ -34,19 +34,12 @@ RECORD: Final = "conflicts,robots"
 
 
 def robots_of(game: Game, text: str | None) -> tuple[int, ...]:
-    """Parse a list of robots and swarms.
+    """Parse a list of robots and swarms of a game; return the numbers of the robots, ascending.
 
     Parameters
     ----------
-    game : Game
-        The game of the robots.
     text : str, optional
         Numbers of robots, from 0, or swarms as S2, separated by commas; all robots by default.
-
-    Returns
-    -------
-    tuple of int
-        Numbers of the robots, ascending.
 
     Raises
     ------
@@ -88,12 +81,8 @@ def contributions(
 
     Parameters
     ----------
-    game : Game
-        The game with all robots.
     robots : sequence of int
         The robots whose contributions are measured, one by one.
-    seeds : sequence of int
-        One game for each seed.
     absent_from : {'learning', 'game'}
         Absent from the learning and the game, or from the measured game only.
     label : tuple of str
@@ -135,31 +124,18 @@ def contributions(
 
 @dataclass
 class _Measured:
-    """Measures of a run.
+    """Measures of a run. The sums are over the conflicts of each robot in the measured game."""
 
-    Attributes
-    ----------
-    run : str
-        Its digest.
-    swarms : list of dict
-        Results of each swarm.
-    time_sud : sequence of float
-        SUD of each swarm in time-utility (s).
-    times : dict of int to (float, float)
-        T(a) and T(p) of each robot in the measured game (s).
-    reward, reward_time : dict of int to float
-        Sums over the conflicts of each robot in the measured game: R, and T(a) + T(p) (s).
-    met : dict of (int, int) to float
-        T(a) of one robot in conflicts with another (s).
-    """
-
-    run: str
-    swarms: list[dict[str, Any]]
-    time_sud: Sequence[float]
-    times: dict[int, tuple[float, float]]
-    reward: dict[int, float] = field(default_factory=lambda: defaultdict(float))
-    reward_time: dict[int, float] = field(default_factory=lambda: defaultdict(float))
+    run: str  # digest
+    swarms: list[dict[str, Any]]  # results of each swarm
+    time_sud: Sequence[float]  # of each swarm (s)
+    times: dict[int, tuple[float, float]]  # T(a) and T(p) of each robot in the measured game (s)
+    reward: dict[int, float] = field(default_factory=lambda: defaultdict(float))  # sum of R
+    reward_time: dict[int, float] = field(
+        default_factory=lambda: defaultdict(float)
+    )  # sum of T(a) + T(p) (s)
     met: dict[tuple[int, int], float] = field(default_factory=lambda: defaultdict(float))
+    """T(a) of a robot in conflicts with another (s), by robot and opponent."""
 
 
 def _measure(run: Run, outcome: Outcome, rewards: Sequence[Reward], time_sud: TimeSud | None) -> _Measured:
@@ -202,20 +178,18 @@ def _compare(game: Game, robot: int, full: _Measured, without: _Measured) -> dic
     """Return the measured columns of a robot's row."""
     policies = _policies(game)
     swarm, policy = policies[robot]
-    mates = [other for other, (its_swarm, _) in enumerate(policies) if its_swarm == swarm and other != robot]
-    opponents = [other for other, (its_swarm, _) in enumerate(policies) if its_swarm != swarm]
+    groups = {
+        "mates": [other for other, (k, _) in enumerate(policies) if k == swarm and other != robot],
+        "opponents": [other for other, (k, _) in enumerate(policies) if k != swarm],
+    }
 
     def columns(measured: _Measured) -> dict[str, Any]:
-        return {
-            "run": measured.run,
-            "sud": measured.swarms[swarm]["sud"],
-            "time_sud": measured.time_sud[swarm],
-            "duration": measured.swarms[swarm]["duration"],
-            "mates_t_a": sum(measured.times[other][0] for other in mates),
-            "mates_t_p": sum(measured.times[other][1] for other in mates),
-            "opponents_t_a": sum(measured.times[other][0] for other in opponents),
-            "opponents_t_p": sum(measured.times[other][1] for other in opponents),
-        }
+        own = measured.swarms[swarm]
+        found = {"run": measured.run, "time_sud": measured.time_sud[swarm]}
+        for name, others in groups.items():
+            found[f"{name}_t_a"] = sum(measured.times[other][0] for other in others)
+            found[f"{name}_t_p"] = sum(measured.times[other][1] for other in others)
+        return found | {"sud": own["sud"], "duration": own["duration"]}
 
     return {
         "robot": robot,
@@ -223,8 +197,7 @@ def _compare(game: Game, robot: int, full: _Measured, without: _Measured) -> dic
         "policy": str(policy),
         "reward": full.reward[robot],
         "reward_time": full.reward_time[robot],
-        "mates_t_a_met": sum(full.met[other, robot] for other in mates),
-        "opponents_t_a_met": sum(full.met[other, robot] for other in opponents),
+        **{f"{name}_t_a_met": sum(full.met[o, robot] for o in others) for name, others in groups.items()},
         **columns(full),
         **{f"{name}_without": value for name, value in columns(without).items()},
     }

@@ -21,12 +21,9 @@ _KEY: Final = ("scenario", "condition", "absent_from", "n")
 
 
 def prepare_table(directory: Path) -> None:
-    """Create a directory for the table if necessary, and remove unfinished files of killed processes.
+    """Create a directory for the table if necessary, and remove temporary files of killed processes.
 
-    Raises
-    ------
-    InputError
-        If the directory is not writable, or has a file of the same name with other columns.
+    Raise `InputError` if the directory is not writable, or has a file of the same name with other columns.
     """
     make_directory(directory)
     path = directory / FILE
@@ -40,24 +37,9 @@ def prepare_table(directory: Path) -> None:
 
 
 def write_table(directory: Path, rows: Sequence[dict[str, Any]]) -> Path:
-    """Add rows to the table; earlier rows of the same scenario, condition, N and `absent_from` are replaced.
+    """Add rows (at least one, as `contributions` returns them) to the table; return its path.
 
-    Parameters
-    ----------
-    directory : Path
-        A directory checked by `prepare_table`.
-    rows : sequence of dict
-        At least one row, as `kswarms.scenarios.contribution.games.contributions` returns them.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    OSError
-        If writing fails; the file is unchanged.
+    Earlier rows of the same scenario, condition, N and `absent_from` are replaced.
     """
     path = directory / FILE
     table = pa.Table.from_pylist(list(rows), schema=SCHEMA)

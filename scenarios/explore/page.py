@@ -189,7 +189,5 @@ def _Transport(session: Session, signal: solara.Reactive[int], act: Act) -> None
             )
         with solara.Div(style={"width": "9rem"}):
             solara.InputFloat(
-                "Go to t (s)",
-                round(player.time, 1),
-                on_value=lambda time: act(lambda: session.go_to(time)),
+                "Go to t (s)", round(player.time, 1), on_value=lambda time: act(lambda: session.go_to(time))
             )

@@ -35,11 +35,3 @@ class Failure:
 
 Result = tuple[Run, Outcome | Failure, float]
 """A run, its outcome or failure, and its CPU time (s)."""
-
-
-class RunError(RuntimeError):
-    """A run failed. `trace` is the traceback of its error, empty if there is none."""
-
-    def __init__(self, message: str, trace: str = "") -> None:
-        super().__init__(message)
-        self.trace = trace

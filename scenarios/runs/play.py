@@ -6,7 +6,8 @@ from contextlib import contextmanager
 
 from kswarms.model.game_model import GameModel
 from kswarms.model.recorder import policy_rows
-from kswarms.scenarios.runs.outcome import Failure, Outcome, RunError
+from kswarms.scenarios.runs.errors import RunError
+from kswarms.scenarios.runs.outcome import Failure, Outcome
 from kswarms.scenarios.runs.run import Run, code_version, require_unchanged
 
 

@@ -5,8 +5,9 @@ from collections.abc import Generator, Sequence
 from concurrent.futures import Executor
 from contextlib import closing
 
+from kswarms.scenarios.runs.errors import RunError
 from kswarms.scenarios.runs.executor import play_through
-from kswarms.scenarios.runs.outcome import Failure, Outcome, Result, RunError
+from kswarms.scenarios.runs.outcome import Failure, Outcome, Result
 from kswarms.scenarios.runs.play import attempt
 from kswarms.scenarios.runs.processes import play_in_processes
 from kswarms.scenarios.runs.run import Run, code_version

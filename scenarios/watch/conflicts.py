@@ -16,24 +16,12 @@ from kswarms.scenarios.runs.run import Run
 
 
 class Arm(NamedTuple):
-    """What a robot knows about an action against a swarm.
-
-    Attributes
-    ----------
-    action : str
-        Name of the action.
-    n : float
-        N(a), discounted if the rule discounts.
-    q : float
-        Q(a) (Eq. 4.15), NaN if the action was never tried.
-    bound : float
-        Upper confidence bound of Q(a) (Eq. 4.16); NaN if the rule is not UCB or an arm was never tried.
-    """
+    """What a robot knows about an action against a swarm."""
 
     action: str
-    n: float
-    q: float
-    bound: float
+    n: float  # N(a), discounted if the rule discounts
+    q: float  # Q(a) (Eq. 4.15), NaN if the action was never tried
+    bound: float  # of Q(a) (Eq. 4.16), NaN if the rule is not UCB or an action was never tried
 
 
 class WatchedConflict(NamedTuple):
@@ -44,7 +32,7 @@ class WatchedConflict(NamedTuple):
     row : dict of str to object
         The columns of ``conflicts.parquet`` without `run` (`kswarms.agents.common.columns`).
     known : tuple of Arm
-        What the robot knew about its actions against that swarm; empty if it does not learn about it.
+        For each action against that swarm; empty if the robot does not learn about the swarm.
     """
 
     row: dict[str, Any]

@@ -10,6 +10,7 @@ from threading import RLock
 from typing import Any, Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kswarms.agents.common.arrays import Floats, Integers
 from kswarms.agents.robot.state import ACTION
@@ -18,6 +19,8 @@ from kswarms.model.game_model import GameModel
 from kswarms.model.recorder import policy_rows
 from kswarms.scenarios.watch.conflicts import ConflictReader, WatchedConflict
 from kswarms.scenarios.watch.robot_view import RobotView, row_of, view_robot
+
+Booleans = NDArray[np.bool_]
 
 MOST_SAMPLES: Final = 400
 """Maximum length of the history; a longer one is thinned to every second sample."""
@@ -28,73 +31,32 @@ FIRST_INTERVAL: Final = 2.0
 
 
 class Snapshot(NamedTuple):
-    """State of a game at an instant.
+    """State of a game with n robots present at an instant; the arrays have a row for each robot."""
 
-    Attributes
-    ----------
-    time : float
-        Time of the measured game, negative during learning (s).
-    robots : tuple of int, length n
-        Numbers of the robots present, ascending.
-    positions : ndarray of float64, shape (n, 2)
-        Positions (m).
-    heading : ndarray of float64, shape (n,)
-        Headings (rad).
-    swarm : ndarray of int64, shape (n,)
-        Swarm of each robot, from 0.
-    in_action, carrying : ndarray of bool, shape (n,)
-        Whether in state A; whether carrying a puck.
-    pucks : tuple of int
-        Score of each swarm.
-    """
-
-    time: float
-    robots: tuple[int, ...]
-    positions: Floats
-    heading: Floats
-    swarm: Integers
-    in_action: np.ndarray[Any, np.dtype[np.bool_]]
-    carrying: np.ndarray[Any, np.dtype[np.bool_]]
-    pucks: tuple[int, ...]
+    time: float  # as `Player.time`
+    robots: tuple[int, ...]  # numbers of the robots, ascending
+    positions: Floats  # shape (n, 2) (m)
+    heading: Floats  # shape (n,) (rad)
+    swarm: Integers  # shape (n,), from 0
+    in_action: Booleans  # shape (n,): in state A
+    carrying: Booleans  # shape (n,): with a puck
+    pucks: tuple[int, ...]  # score of each swarm
 
 
 class Sample(NamedTuple):
-    """Results so far: a point of each curve.
+    """Results so far: a point of each curve."""
 
-    Attributes
-    ----------
-    time : float
-        Time of the measured game, negative during learning (s).
-    swarms : list of dict
-        Results of each swarm, as `kswarms.model.game_model.GameModel.results` returns them.
-    fights : dict of (int, int) to float
-        For each learning swarm and swarm learned about, from 1: the share of robots whose best action is to
-        fight.
-    """
-
-    time: float
-    swarms: list[dict[str, Any]]
+    time: float  # as `Player.time`
+    swarms: list[dict[str, Any]]  # as `GameModel.results` returns them
     fights: dict[tuple[int, int], float]
+    """Share of robots whose best action is to fight, by their swarm and the swarm learned about, from 1."""
 
 
 class Player:
     """Plays a game step by step. Its methods are thread-safe.
 
-    Attributes
-    ----------
-    game : Game
-        The game.
-    seed : int
-        Seed of the run, ≥ 0.
-    model : GameModel
-        The running game; `seek` replaces it when it rewinds.
-    conflicts : deque of WatchedConflict
-        The latest finished conflicts, at most `MOST_CONFLICTS`, in the order in which they ended.
-
-    Raises
-    ------
-    InputError
-        If the game cannot be played.
+    `model` is the running game; `seek` replaces it when it rewinds. `conflicts` are the latest conflicts, at
+    most `MOST_CONFLICTS`, in the order in which they ended.
     """
 
     def __init__(self, game: Game, seed: int) -> None:
@@ -116,8 +78,6 @@ class Player:
         """Release the game."""
         with self._lock:
             self.model.forget()
-
-    # State.
 
     @property
     def time(self) -> float:
@@ -162,8 +122,6 @@ class Player:
         with self._lock:
             return view_robot(self.model, robot)
 
-    # Playing.
-
     def advance(self, seconds: float) -> None:
         """Play for a time, rounded to at least one control period, or to the end of the game."""
         with self._lock:
@@ -172,10 +130,8 @@ class Player:
     def seek(self, time: float) -> None:
         """Go to an instant (s, as `time`), forwards or backwards; stop at the end of the game.
 
-        Raises
-        ------
-        InputError
-            If the game cannot be rewound because files that it needs have changed; its state is kept.
+        If the game cannot be rewound because files that it needs have changed, raise `InputError` and keep
+        the state.
         """
         with self._lock:
             target = round((time + self.begin) / self.game.parameters.period)

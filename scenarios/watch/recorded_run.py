@@ -12,12 +12,10 @@ from kswarms.scenarios.study.ledger import Ledger
 
 
 def recorded_run(directory: Path, name: str) -> Run:
-    """Return a run of a results directory.
+    """Return a run of an output directory of ``kswarms run`` or ``kswarms contribution``.
 
     Parameters
     ----------
-    directory : Path
-        Output directory of ``kswarms run`` or ``kswarms contribution``.
     name : str
         Digest of the run: column ``run`` of a table, or ``run_without`` of ``contribution.parquet``.
 
@@ -35,15 +33,10 @@ def recorded_run(directory: Path, name: str) -> Run:
 
 def _compared_run(row: dict[str, Any], name: str) -> Run:
     """Return a run that a row of contributions compares."""
-    refusal = InputError(
-        "run", name, "is of another version of kswarms, or of a scenario that is not in the list"
-    )
-    scenario = CATALOGUE.get(row["scenario"])
-    if scenario is None:
-        raise refusal
+    refusal = InputError("run", name, "is of another version of kswarms, or its scenario is not in the list")
     try:
-        game = scenario.game(row["condition"], row["n"])
-    except InputError:
+        game = CATALOGUE[row["scenario"]].game(row["condition"], row["n"])
+    except (KeyError, InputError):
         raise refusal from None
     if name != row["run"]:
         game = game.replace(absent=(row["robot"],), absent_from=row["absent_from"])

@@ -26,70 +26,30 @@ _DOING: Final = {
 
 
 class Sensor(NamedTuple):
-    """One of the eight proximity sensors.
+    """One of the eight proximity sensors."""
 
-    Attributes
-    ----------
-    angle : float
-        Direction of its centre relative to the heading (rad).
-    free : float
-        Distance from the robot's surface to the nearest obstacle in its sector, at most its range (m).
-    active : bool
-        Whether it counts in n'_i (Eq. 5.4).
-    """
-
-    angle: float
-    free: float
-    active: bool
+    angle: float  # of its centre, relative to the heading (rad)
+    free: float  # from the robot's surface to the nearest obstacle in its sector, at most its range (m)
+    active: bool  # whether it counts in n'_i (Eq. 5.4)
 
 
 class RobotView(NamedTuple):
-    """State of a robot.
-
-    Attributes
-    ----------
-    robot, swarm : int
-        Number from 0; swarm-ID from 1.
-    policy : str
-        As the game describes it.
-    doing : str
-        Current activity in words.
-    opponent : str
-        The robot met last; empty before the first conflict, and if that robot has left.
-    carrying : bool
-        Whether it carries a puck.
-    pucks : int
-        Pucks deposited in this phase.
-    t_a : tuple of float
-        T(a) for each opposing swarm (s).
-    t_p : float
-        T(p) (s).
-    conflicts : tuple of int
-        Conflicts begun, for each opposing swarm.
-    sensors : tuple of Sensor
-        Counter-clockwise from the one ahead.
-    learning : bool
-        Whether it is still learning.
-    rule : str
-        Its selection rule; empty if it does not learn.
-    bandits : dict of int to tuple of Arm
-        What it knows about its actions against each swarm learned about, from 1.
-    """
+    """State of a robot; times and counts are those of the current phase."""
 
     robot: int
-    swarm: int
-    policy: str
+    swarm: int  # from 1
+    policy: str  # as the game describes it
     doing: str
-    opponent: str
+    opponent: str  # the robot met last; empty before the first conflict, and if that robot has left
     carrying: bool
     pucks: int
-    t_a: tuple[float, ...]
-    t_p: float
-    conflicts: tuple[int, ...]
-    sensors: tuple[Sensor, ...]
+    t_a: tuple[float, ...]  # T(a) against each swarm (s)
+    t_p: float  # T(p) (s)
+    conflicts: tuple[int, ...]  # begun, against each swarm
+    sensors: tuple[Sensor, ...]  # counter-clockwise from the one ahead
     learning: bool
-    rule: str
-    bandits: dict[int, tuple[Arm, ...]]
+    rule: str  # the selection rule; empty if the robot does not learn
+    bandits: dict[int, tuple[Arm, ...]]  # for each swarm learned about, from 1
 
 
 def row_of(model: GameModel, number: int) -> int | None:

@@ -13,7 +13,7 @@ from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.cli import run as run_command
 from kswarms.scenarios.description.scenario import Scenario
-from kswarms.scenarios.runs.outcome import RunError
+from kswarms.scenarios.runs.errors import RunError
 from kswarms.scenarios.runs.run import expand
 
 pytestmark = pytest.mark.usefixtures("empty_directory")
@@ -33,9 +33,7 @@ def test_list_names_every_scenario_and_table(capsys: pytest.CaptureFixture[str])
     assert all(line.endswith(f"  {entry.title}") for entry, line in zip(entries, lines[1:-1], strict=True))
 
 
-def test_list_prints_the_cost_and_counts_shared_runs_once(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_list_prints_the_cost_and_counts_shared_runs_once(capsys: pytest.CaptureFixture[str]) -> None:
     invoke(["list"])
     sizes = {line.split()[0]: line.split()[1:4] for line in capsys.readouterr().out.splitlines()}
     assert sizes["fig-6.1a"] == ["1", "200", "16.8"]  # s: 200 games × 600 s × 28 robots × 5 µs
@@ -70,9 +68,7 @@ def test_show_prints_the_scenario_as_toml(capsys: pytest.CaptureFixture[str]) ->
 
 
 @pytest.mark.parametrize("table_id", TABLES)
-def test_show_of_a_table_prints_its_scenarios(
-    table_id: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_show_of_a_table_prints_its_scenarios(table_id: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["show", table_id]) == 0
     shown = tomllib.loads(capsys.readouterr().out)["scenarios"]
     assert [Scenario(**each) for each in shown] == [CATALOGUE[name] for name in TABLES[table_id].scenarios]

@@ -252,7 +252,7 @@ def test_a_recorded_run_with_an_absent_robot_is_watched(
             ".filter((cell) => cell.getBoundingClientRect().right <= edge).map((cell) => cell.innerText)"
         )
         assert [text.replace("\n", " ") for text in seen][:5] == [
-            *("t (s)", "who → met", "where (m)", "known: Q (N)", "chose R (s)"),
+            *("t (s)", "who → met", "where (m)", "known: Q (N)", "chose R (s)")
         ]
         assert browser.complaints() == []
 

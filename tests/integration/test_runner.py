@@ -21,7 +21,8 @@ from kswarms.agents.common.columns import RECORDED_TABLES
 from kswarms.model.game_model import GameModel
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.runs import processes
-from kswarms.scenarios.runs.outcome import Failure, Outcome, Result, RunError
+from kswarms.scenarios.runs.errors import RunError
+from kswarms.scenarios.runs.outcome import Failure, Outcome, Result
 from kswarms.scenarios.runs.play import attempt, play
 from kswarms.scenarios.runs.run import Run, expand
 from kswarms.scenarios.runs.sweep import play_all, sweep

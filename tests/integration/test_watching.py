@@ -154,7 +154,7 @@ def test_a_compared_run_of_an_unknown_scenario_is_refused() -> None:
         whole = {field.name: None for field in SCHEMA} | row | {"scenario": scenario, "condition": condition}
         whole["absent_from"] = "game"
         pq.write_table(pa.Table.from_pylist([whole], schema=SCHEMA), "contribution.parquet")
-        with pytest.raises(InputError, match=f"run='{name}': is of another version of kswarms, or of a "):
+        with pytest.raises(InputError, match=f"run='{name}': is of another version of kswarms, or its "):
             recorded_run(Path(), str(name))
         with pytest.raises(InputError, match="must be a directory with a ledger"):
             recorded_run(Path(), "4567")

@@ -12,7 +12,7 @@ from kswarms.agents.user_code.loading import load_class, sources
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.game_model import GameModel
 from kswarms.model.recorder import policy_rows, save_policies
-from kswarms.scenarios.runs.outcome import RunError
+from kswarms.scenarios.runs.errors import RunError
 from kswarms.scenarios.runs.play import play
 from kswarms.scenarios.runs.run import Run, digest
 

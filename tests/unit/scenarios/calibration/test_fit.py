@@ -11,9 +11,11 @@ import pytest
 from numpy.typing import NDArray
 
 from kswarms.agents.common.errors import InputError
+from kswarms.analysis.statistics.intervals import bootstrap_intervals
 from kswarms.model.description.parameters import parse_parameters
+from kswarms.scenarios.calibration import fit
 from kswarms.scenarios.calibration import shares as shares_module
-from kswarms.scenarios.calibration.fit import Setup, calibrate, error_of, validate
+from kswarms.scenarios.calibration.fit import Setup, error_of
 from kswarms.scenarios.calibration.games import START, learning_game, texts_of, to_candidate, to_place
 from kswarms.scenarios.runs.run import Run
 
@@ -22,6 +24,10 @@ TINY = Setup(
     free=("friction", "gamma"), densities=(6,), seeds=1, generations=3, population=4, validation_seeds=6
 )
 Played = Generator[tuple[Run, float], None, None]
+
+
+def calibrate(setup: Setup, play: Any, out: Path, fresh: bool = False) -> dict[str, Any]:
+    return fit.calibrate(setup, TARGET, play, bootstrap_intervals, out, fresh)
 
 
 def share(run: Run, friction: float, distance: float = START["conflict_distance"]) -> float:
@@ -62,7 +68,7 @@ def test_the_error_compares_means_over_seeds() -> None:
 def test_the_search_finds_the_values_behind_the_table(tmp_path: Path) -> None:
     setup = Setup(free=("friction", "conflict_distance", "gamma"), densities=(6, 30), seeds=2, generations=30)
     table = Table(friction=0.27, distance=0.1)
-    trace = calibrate(setup, TARGET, table, tmp_path)
+    trace = calibrate(setup, table, tmp_path)
     found = trace["generations"][-1]["mean"]
     assert found["friction"] == pytest.approx(0.27, rel=0.1)
     assert found["conflict_distance"] == pytest.approx(0.1, rel=0.1)
@@ -76,7 +82,7 @@ def test_the_search_finds_the_values_behind_the_table(tmp_path: Path) -> None:
 
 def test_the_start_values_are_kept_if_they_are_the_best(tmp_path: Path) -> None:
     table = Table(friction=START["friction"])
-    trace = calibrate(TINY.replace(validation_seeds=30), TARGET, table, tmp_path)
+    trace = calibrate(TINY.replace(validation_seeds=30), table, tmp_path)
     assert trace["validation"]["gain"] < 0
     assert trace["result"]["beats_start"] is False
 
@@ -85,13 +91,13 @@ def test_without_any_effect_the_gain_is_zero(tmp_path: Path) -> None:
     def flat(runs: Sequence[Run]) -> Played:
         yield from ((run, 0.25) for run in runs)
 
-    validation = calibrate(TINY, TARGET, flat, tmp_path)["validation"]
+    validation = calibrate(TINY, flat, tmp_path)["validation"]
     assert (validation["gain"], validation["gain_low"], validation["gain_high"]) == (0, 0, 0)
 
 
 def test_candidates_of_a_generation_share_seeds_of_their_own(tmp_path: Path) -> None:
     table = Table()
-    calibrate(TINY, TARGET, table, tmp_path)
+    calibrate(TINY, table, tmp_path)
     seeds = [run.seed for run in table.runs]
     assert seeds[:24] == [10_000] * 8 + [10_001] * 8 + [10_002] * 8  # 4 points, 2 cells
     assert set(seeds[24:]) == set(range(1000, 1006))
@@ -102,10 +108,10 @@ def test_candidates_of_a_generation_share_seeds_of_their_own(tmp_path: Path) -> 
 @pytest.mark.parametrize("games", [0, 1, 5, 8, 17, 24, 30])
 def test_a_resumed_fit_equals_an_uninterrupted_one(games: int, tmp_path: Path) -> None:
     whole, before, after = Table(), Table(stop_after=games), Table(backwards=True)
-    trace = calibrate(TINY, TARGET, whole, tmp_path / "whole")
+    trace = calibrate(TINY, whole, tmp_path / "whole")
     with pytest.raises(KeyboardInterrupt):
-        calibrate(TINY, TARGET, before, tmp_path / "parts")
-    assert calibrate(TINY, TARGET, after, tmp_path / "parts") == trace
+        calibrate(TINY, before, tmp_path / "parts")
+    assert calibrate(TINY, after, tmp_path / "parts") == trace
     assert trace_of(tmp_path / "parts") == trace
     played = [run.digest for run in before.runs + after.runs]
     assert sorted(played) == sorted(run.digest for run in whole.runs)  # each once
@@ -115,16 +121,14 @@ def test_temporary_files_of_a_killed_fit_are_removed(tmp_path: Path) -> None:
     for name in ("shares.json", "calibration.json"):
         (tmp_path / f".unfinished-99999999-{name}").write_text("{")  # not the id of a process
     with pytest.raises(KeyboardInterrupt):
-        calibrate(TINY, TARGET, Table(stop_after=0), tmp_path)
+        calibrate(TINY, Table(stop_after=0), tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["shares.json"]
 
 
 def test_a_fit_can_be_extended_by_more_generations(tmp_path: Path) -> None:
-    calibrate(TINY, TARGET, Table(), tmp_path / "grown")
+    calibrate(TINY, Table(), tmp_path / "grown")
     more = TINY.replace(generations=5)
-    assert calibrate(more, TARGET, Table(), tmp_path / "grown") == calibrate(
-        more, TARGET, Table(), tmp_path / "at once"
-    )
+    assert calibrate(more, Table(), tmp_path / "grown") == calibrate(more, Table(), tmp_path / "at once")
 
 
 def test_the_search_leaves_the_global_generator_alone(tmp_path: Path) -> None:
@@ -132,25 +136,25 @@ def test_the_search_leaves_the_global_generator_alone(tmp_path: Path) -> None:
         return list(np.random.get_state()[1])  # noqa: NPY002  # the one that must not be touched
 
     before = state()
-    calibrate(TINY, TARGET, Table(), tmp_path)
+    calibrate(TINY, Table(), tmp_path)
     assert state() == before
 
 
 def test_another_setup_needs_another_directory_or_a_fresh_start(tmp_path: Path) -> None:
-    calibrate(TINY, TARGET, Table(), tmp_path)
+    calibrate(TINY, Table(), tmp_path)
     other = TINY.replace(free=("friction", "flight_duration"))
     with pytest.raises(InputError, match="holds a fit of another setup"):
-        calibrate(other, TARGET, Table(), tmp_path)
-    trace = calibrate(other, TARGET, Table(), tmp_path, fresh=True)
+        calibrate(other, Table(), tmp_path)
+    trace = calibrate(other, Table(), tmp_path, fresh=True)
     assert set(trace["start"]) == {"friction", "flight_duration"}
-    assert calibrate(other, TARGET, Table(stop_after=0), tmp_path) == trace
+    assert calibrate(other, Table(stop_after=0), tmp_path) == trace
 
 
 @pytest.mark.parametrize("content", ["", "[]", "3", '{"setup": {}}', '{"setup": 1, "shares": {}}'])
 def test_a_foreign_file_is_refused_and_kept(content: str, tmp_path: Path) -> None:
     (tmp_path / "shares.json").write_text(content)
     with pytest.raises(InputError, match=r"holds a shares\.json of something else"):
-        calibrate(TINY, TARGET, Table(), tmp_path)
+        calibrate(TINY, Table(), tmp_path)
     assert (tmp_path / "shares.json").read_text() == content
 
 
@@ -180,11 +184,11 @@ def test_an_invalid_setup_is_refused(change: dict[str, object], complaint: str) 
 
 def test_densities_must_be_in_the_table_and_out_a_directory(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"densities=8: must be among 6, 30"):
-        calibrate(TINY.replace(densities=(6, 8)), TARGET, Table(), tmp_path / "out")
+        calibrate(TINY.replace(densities=(6, 8)), Table(), tmp_path / "out")
     assert not (tmp_path / "out").exists()
     (tmp_path / "file").touch()
     with pytest.raises(InputError, match="must be a writable directory"):
-        calibrate(TINY, TARGET, Table(), tmp_path / "file")
+        calibrate(TINY, Table(), tmp_path / "file")
 
 
 def _fail(*_: object) -> None:
@@ -199,8 +203,12 @@ def test_shares_are_saved_during_long_generations(tmp_path: Path, monkeypatch: p
         shares_module, "write_json", lambda _, content: saved.append(len(content.get("shares", ())))
     )
     with pytest.raises(KeyboardInterrupt):
-        calibrate(TINY, TARGET, Table(stop_after=7), tmp_path)
+        calibrate(TINY, Table(stop_after=7), tmp_path)
     assert saved == [0, 2, 4, 6, 7]
+
+
+def validate(start: NDArray[np.float64], fitted: NDArray[np.float64]) -> dict[str, float]:
+    return fit.validate(start, fitted, np.full(20, 50.0), bootstrap_intervals)
 
 
 def _shares(seed: int, mean: float) -> NDArray[np.float64]:
@@ -209,7 +217,7 @@ def _shares(seed: int, mean: float) -> NDArray[np.float64]:
 
 @pytest.mark.parametrize(("fitted", "beaten"), [(0.52, True), (0.60, False), (0.70, False)])
 def test_the_interval_distinguishes_a_gain_from_chance(fitted: float, beaten: bool) -> None:
-    found = validate(_shares(1, 0.60), _shares(2, fitted), np.full(20, 50.0))
+    found = validate(_shares(1, 0.60), _shares(2, fitted))
     assert found["start_error"] - found["fitted_error"] == pytest.approx(found["gain"])
     assert found["gain_low"] <= found["gain"] <= found["gain_high"]
     assert found["gain"] == pytest.approx(100 * (0.60 - fitted), abs=1.0)
@@ -218,7 +226,7 @@ def test_the_interval_distinguishes_a_gain_from_chance(fitted: float, beaten: bo
 
 def test_noise_common_to_both_candidates_does_not_widen_the_interval() -> None:
     noise = _shares(1, 0.0)
-    found = validate(noise + 0.9, noise + 0.8, np.full(20, 50.0))
+    found = validate(noise + 0.9, noise + 0.8)
     assert found["gain_low"] == pytest.approx(10)
     assert found["gain_high"] == pytest.approx(10)
 
@@ -247,6 +255,6 @@ def test_the_start_values_are_the_defaults() -> None:
 
 def test_all_parameters_can_be_searched_together(tmp_path: Path) -> None:
     setup = Setup(densities=(6,), seeds=1, generations=2, validation_seeds=6)
-    trace = calibrate(setup, TARGET, Table(), tmp_path)
+    trace = calibrate(setup, Table(), tmp_path)
     assert len(trace["start"]) == 16
     assert all(0 <= point["push_share"] <= 0.5 for point in trace["generations"][1]["points"])

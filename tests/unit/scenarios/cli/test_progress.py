@@ -89,5 +89,5 @@ def test_a_bar_of_steps_is_shown_on_a_terminal_only(
 
 def test_durations_are_in_seconds_minutes_or_hours() -> None:
     assert [format_duration(seconds) for seconds in (0.24, 59.9, 60, 3599.4, 3599.6, 8337)] == [
-        *("0.2 s", "59.9 s", "1:00 min", "59:59 min", "1:00 h", "2:19 h"),
+        *("0.2 s", "59.9 s", "1:00 min", "59:59 min", "1:00 h", "2:19 h")
     ]

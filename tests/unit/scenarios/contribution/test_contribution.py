@@ -184,9 +184,7 @@ def test_a_foreign_file_is_refused_and_kept(tmp_path: Path) -> None:
         assert (tmp_path / FILE).read_bytes() == before
 
 
-def test_a_failed_write_leaves_the_table_unchanged(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_failed_write_leaves_the_table_unchanged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = write_table(tmp_path, rows())
     before = path.read_bytes()
 

@@ -11,7 +11,7 @@ from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.explore import playback
 from kswarms.scenarios.explore import session as session_module
 from kswarms.scenarios.explore.session import Session
-from kswarms.scenarios.runs.outcome import RunError
+from kswarms.scenarios.runs.errors import RunError
 from kswarms.scenarios.runs.run import Run, digest
 
 COWARD = """
