@@ -36,10 +36,9 @@ _SHARES: Final = "shares.json"
 TRACE: Final = "calibration.json"
 """File of the trace of a fit."""
 
-Statistic = Callable[[Floats], Floats]
-Intervals = Callable[[Floats, Statistic], tuple[Floats, Floats, Floats]]
-"""Returns a statistic of the mean over seeds with its interval, as
-`kswarms.analysis.statistics.intervals.bootstrap_intervals` does."""
+IntervalOf = Callable[[Floats, Callable[[Floats], Floats]], Any]
+"""Returns a statistic of the mean over the seeds with its interval, as
+`kswarms.analysis.statistics.intervals.bootstrap_interval` does."""
 
 
 class Setup(Checked):
@@ -82,7 +81,7 @@ def calibrate(
     setup: Setup,
     target: Mapping[Cell, float],
     play: Play,
-    intervals: Intervals,
+    interval_of: IntervalOf,
     out: Path,
     fresh: bool = False,
     report: Callable[[str], None] = lambda _: None,
@@ -127,7 +126,7 @@ def calibrate(
         )
     seeds = range(VALIDATION_SEED, VALIDATION_SEED + setup.validation_seeds)
     of_start, of_fitted = shares.measure([start, fitted], list(target), seeds)
-    trace["validation"] = validate(of_start, of_fitted, np.array(list(target.values())), intervals)
+    trace["validation"] = validate(of_start, of_fitted, np.array(list(target.values())), interval_of)
     parameters, rule = texts_of(fitted)
     beaten = trace["validation"]["gain_low"] > 0
     trace["result"] = {"parameters": parameters, "rule": rule, "beats_start": beaten}
@@ -193,7 +192,7 @@ def _search(
         }
 
 
-def validate(start: Floats, fitted: Floats, target: Floats, intervals: Intervals) -> dict[str, float]:
+def validate(start: Floats, fitted: Floats, target: Floats, interval_of: IntervalOf) -> dict[str, float]:
     """Compare the errors of two candidates on the same seeds (percentage points).
 
     `start` and `fitted` are shares of learners that learned to attack, shape (cells, seeds); `target`, shape
@@ -205,6 +204,7 @@ def validate(start: Floats, fitted: Floats, target: Floats, intervals: Intervals
     def gains(means: Floats) -> Floats:
         return error_of(means[:, 0], target) - error_of(means[:, 1], target)
 
-    values = (*error_of(both.mean(axis=0), target), *intervals(both, gains))
-    names = ("start_error", "fitted_error", "gain", "gain_low", "gain_high")
-    return {name: float(value) for name, value in zip(names, values, strict=True)}
+    gain = interval_of(both, gains)
+    start_error, fitted_error = map(float, error_of(both.mean(axis=0), target))
+    errors = {"start_error": start_error, "fitted_error": fitted_error}
+    return errors | {"gain": gain.estimate, "gain_low": gain.low, "gain_high": gain.high}

@@ -45,7 +45,7 @@ def calibrate(
     Example: kswarms calibrate --free friction,gamma --densities 16,30,50 --seeds 2
     """
     from kswarms.analysis.results.published import table_6_1
-    from kswarms.analysis.statistics.intervals import bootstrap_intervals
+    from kswarms.analysis.statistics.intervals import bootstrap_interval
     from kswarms.scenarios.calibration import fit
 
     options: dict[str, Any] = {"seeds": seeds, "generations": generations, "population": population}
@@ -61,7 +61,7 @@ def calibrate(
         for n, percent in zip(table["n"], table[column], strict=True)
     }
     report = partial(typer.echo, err=True)
-    trace = fit.calibrate(setup, target, partial(_play, jobs), bootstrap_intervals, out, fresh, report)
+    trace = fit.calibrate(setup, target, partial(_play, jobs), bootstrap_interval, out, fresh, report)
     for line in fit.summary(trace):
         typer.echo(line)
     typer.echo(f"trace:      {out / fit.TRACE}")

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Any, Final
 
 import solara
@@ -35,7 +36,7 @@ _POLICY_NAMES: Final = [name for name in (*POLICIES, *ALIASES) if name != "learn
 
 @solara.component
 def Controls(session: Session, signal: solara.Reactive[int], act: Act) -> None:
-    """Show all controls of a session."""
+    """Show all controls."""
     signal.get()
     form = session.form
 
@@ -64,21 +65,17 @@ def Controls(session: Session, signal: solara.Reactive[int], act: Act) -> None:
     swarms = len(form.swarms)
     with solara.Row(gap="6px"):
         for label, more in (("Add a swarm", 1), (f"Remove S{swarms}", -1)):
-            solara.Button(
-                label,
-                small=True,
-                text=True,
-                disabled=swarms + more == 0,
-                on_click=lambda more=more: act(lambda: session.add_swarms(more)),
-            )
+            add = partial(act, partial(session.add_swarms, more))
+            solara.Button(label, small=True, text=True, disabled=swarms + more == 0, on_click=add)
     _learning(session, change, act)
     with solara.Details("World"):
         _world(session, change, act)
+    drawings = {
+        "show_sectors": "Conflict sectors of all robots",
+        "show_sensors": "Sensors of the selected robot",
+    }
     with solara.Details("Drawing"):
-        for name, label in (
-            ("show_sectors", "Conflict sectors of all robots"),
-            ("show_sensors", "Sensors of the selected robot"),
-        ):
+        for name, label in drawings.items():
             solara.Checkbox(
                 label=label,
                 value=getattr(session, name),
@@ -140,12 +137,9 @@ def _swarm(session: Session, k: int, act: Act) -> None:
             class_="kswarms-policy",
         )
         solara.InputInt("Share of the robots", swarm["share"], on_value=lambda share: change(share=share))
-        for name, state in (("drive", "P"), ("drive_action", "A")):
-
-            def change_drive(drive: float, name: str = name) -> None:
-                change(**{name: drive})
-
-            _slider(f"Drive in {state} {swarm[name]:g}", swarm[name], _DRIVE, change_drive)
+        p, a = swarm["drive"], swarm["drive_action"]
+        _slider(f"Drive in P {p:g}", p, _DRIVE, lambda drive: change(drive=drive))
+        _slider(f"Drive in A {a:g}", a, _DRIVE, lambda drive: change(drive_action=drive))
 
 
 def _learning(session: Session, change: Callable[..., None], act: Act) -> None:
@@ -162,20 +156,15 @@ def _learning(session: Session, change: Callable[..., None], act: Act) -> None:
 
     with solara.Details("Learning", expand=True):
         choose("Reward", "reward", REWARDS, learning.reward)
-        if learning.delta is not None:
-            label = f"Δ = {learning.delta:g}"
+        if (delta := learning.delta) is not None:
             scale = (0.0, 0.5, 0.005)
-            _slider(label, learning.delta, scale, lambda delta: change_learning("reward", delta=delta))
+            _slider(f"Δ = {delta:g}", delta, scale, lambda new: change_learning("reward", delta=new))
         choose("Selection rule", "rule", RULES, learning.rule)
-        if learning.gamma is not None:
-            label = f"γ = {learning.gamma:g}"
+        if (gamma := learning.gamma) is not None:
             scale = (0.0, 1.0, 0.005)
-            _slider(label, learning.gamma, scale, lambda gamma: change_learning("rule", gamma=gamma))
-        solara.InputFloat(
-            "Time to learn (s)",
-            session.form.fields["learning"],
-            on_value=lambda seconds: change(learning=seconds),
-        )
+            _slider(f"γ = {gamma:g}", gamma, scale, lambda new: change_learning("rule", gamma=new))
+        seconds = session.form.fields["learning"]
+        solara.InputFloat("Time to learn (s)", seconds, on_value=lambda new: change(learning=new))
 
 
 def _world(session: Session, change: Callable[..., None], act: Act) -> None:
@@ -186,15 +175,14 @@ def _world(session: Session, change: Callable[..., None], act: Act) -> None:
         parameters = {}  # the message above the arena describes the error
     for name, (label, scale) in _SLIDERS.items():
 
-        def change_parameter(value: float, name: str = name) -> None:
-            act(lambda: session.change_parameter(name, value))
+        def change_parameter(new: float, name: str = name) -> None:
+            act(lambda: session.change_parameter(name, new))
 
-        if name in parameters:
-            _slider(f"{label} {parameters[name]:.4g}", parameters[name], scale, change_parameter)
+        if (value := parameters.get(name)) is not None:
+            _slider(f"{label} {value:.4g}", value, scale, change_parameter)
     solara.InputText("Parameters", fields["parameters"], on_value=lambda text: change(parameters=text))
-    solara.Select(
-        "Layout", value=fields["layout"], values=list(LAYOUTS), on_value=lambda name: change(layout=name)
-    )
+    layout = fields["layout"]
+    solara.Select("Layout", value=layout, values=list(LAYOUTS), on_value=lambda name: change(layout=name))
     body = getattr(fields["body"], "name", fields["body"])
     bodies = list(dict.fromkeys([*BODIES, body]))
     solara.Select("Body", value=body, values=bodies, on_value=lambda name: change(body=name))

@@ -13,23 +13,11 @@ from kswarms.scenarios.description.condition import Condition, SwarmRule
 
 
 class Form(NamedTuple):
-    """Values of the controls. They may be invalid; `game` validates them.
+    """Values of the controls. They may be invalid; `game` validates them."""
 
-    Attributes
-    ----------
-    swarms : tuple of dict
-        Fields of a `kswarms.scenarios.description.condition.SwarmRule` for each swarm.
-    fields : dict of str to object
-        Fields of a `kswarms.scenarios.description.condition.Condition`: parameters as text, body by name.
-    n, seed : int
-        Robots in all; seed.
-    absent, absent_from
-        Fields of a `kswarms.model.description.game.Game`.
-    """
-
-    swarms: tuple[dict[str, Any], ...]
-    fields: dict[str, Any]
-    n: int
+    swarms: tuple[dict[str, Any], ...]  # fields of a `SwarmRule` for each swarm
+    fields: dict[str, Any]  # fields of a `Condition`: parameters as text, body by name
+    n: int  # robots in all
     seed: int
     absent: tuple[int, ...] = ()
     absent_from: Literal["learning", "game"] = "learning"
@@ -75,24 +63,16 @@ def with_parameter(text: str, name: str, value: float) -> str:
 
 
 class Learning(NamedTuple):
-    """How a learner learns.
-
-    Attributes
-    ----------
-    reward, rule : str
-        Names.
-    delta, gamma : float, optional
-        Δ and γ; None if the reward or the rule has none, or Δ is set for each opponent.
-    """
+    """How a learner learns: the names of its reward and its selection rule, Δ and γ."""
 
     reward: str
     rule: str
-    delta: float | None
-    gamma: float | None
+    delta: float | None  # None if the reward has none, or one for each opponent
+    gamma: float | None  # None if the rule has none
 
 
 def learning_of(policies: list[str]) -> Learning | None:
-    """Return how the first learner among some policies learns; none if no learner can be parsed."""
+    """Return how the first learner among some policies learns; None if no learner can be parsed."""
     for policy in policies:
         try:
             for spec in parse_policies(policy):

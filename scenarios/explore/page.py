@@ -169,6 +169,9 @@ def _Transport(session: Session, signal: solara.Reactive[int], act: Act) -> None
     def button(label: str, icon: str, action: Callable[[], None], **rest: Any) -> None:
         solara.Button(label, icon_name=icon, on_click=lambda: act(action), small=True, **rest)
 
+    def set_speed(speed: int) -> None:
+        act(lambda: setattr(session, "speed", speed))
+
     with solara.Row(gap="6px", style={"flex-wrap": "wrap", "align-items": "center", "row-gap": "6px"}):
         button(
             "Pause" if runs else "Play", "mdi-pause" if runs else "mdi-play", session.toggle, color="primary"
@@ -181,12 +184,8 @@ def _Transport(session: Session, signal: solara.Reactive[int], act: Act) -> None
         button("To the end", "mdi-skip-forward", lambda: session.go_to(player.game.duration))
     with solara.Row(gap="16px", style={"flex-wrap": "wrap", "padding-top": "6px"}):
         with solara.Div(style={"width": "9rem"}):
-            solara.Select(
-                "Speed (× real time)",
-                value=session.speed,
-                values=list(SPEEDS),
-                on_value=lambda speed: act(lambda: setattr(session, "speed", speed)),
-            )
+            speeds = list(SPEEDS)
+            solara.Select("Speed (× real time)", value=session.speed, values=speeds, on_value=set_speed)
         with solara.Div(style={"width": "9rem"}):
             solara.InputFloat(
                 "Go to t (s)", round(player.time, 1), on_value=lambda time: act(lambda: session.go_to(time))

@@ -18,31 +18,17 @@ _STRIDE: Final = 5.0
 
 
 class Playback:
-    """A game that is played, paused and rewound.
-
-    Attributes
-    ----------
-    player : Player
-        The game.
-    playing : bool
-        Whether the game runs.
-    speed : int
-        Seconds of the game per second, one of `SPEEDS`.
-    goal : float, optional
-        Instant to which the game is played at full speed (s, as `Player.time`).
-    error : str
-        Latest error in one line, empty if there is none.
-    """
+    """A game that is played, paused and rewound."""
 
     def __init__(self, player: Player) -> None:
         self.player = player
         self.playing = False
-        self.speed = 10
-        self.goal: float | None = None
-        self.error = ""
+        self.speed = 10  # one of `SPEEDS`
+        self.goal: float | None = None  # instant to play to at full speed (s, as `Player.time`)
+        self.error = ""  # the latest error in one line, empty if there is none
         self._failed = False
         self._transient = False  # whether the error disappears when the game moves elsewhere
-        self._owed = 0.0
+        self._owed = 0.0  # time of the game that is due, less than a period (s)
 
     def restart(self, player: Player) -> None:
         """Replace the game by another one, which starts at its beginning."""
@@ -120,7 +106,8 @@ class Playback:
         if not self.active:
             return False
         if self.goal is not None:
-            return self._play_at_full_speed(player, self.goal)
+            self._play_at_full_speed(player, self.goal)
+            return True
         self._owed += elapsed * self.speed
         period = player.game.parameters.period
         due = int(self._owed / period + 1e-9) * period
@@ -131,11 +118,10 @@ class Playback:
             player.advance(due)
         return True
 
-    def _play_at_full_speed(self, player: Player, goal: float) -> bool:
+    def _play_at_full_speed(self, player: Player, goal: float) -> None:
         deadline = clock.monotonic() + _BURST
         with self.report_errors():
             while player.time < goal and not player.ended and clock.monotonic() < deadline:
                 player.seek(min(goal, player.time + _STRIDE))
         if self.goal == goal and (player.time >= goal or player.ended):
             self.goal = None
-        return True

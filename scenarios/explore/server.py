@@ -18,23 +18,10 @@ HOST = "127.0.0.1"
 
 
 def serve(start: str | Run, port: int, open_browser: bool, ready: Callable[[str], None]) -> None:
-    """Serve the page until interrupted.
+    """Serve the page on a port (0 for any free port) until interrupted.
 
-    Parameters
-    ----------
-    start : str or Run
-        Scenario or run of a new page, as `kswarms.scenarios.explore.session.Session` takes it.
-    port : int
-        Port; 0 for any free port.
-    open_browser : bool
-        Whether to open the page in the browser.
-    ready : callable
-        Called with the address when the page can be opened.
-
-    Raises
-    ------
-    InputError
-        If the port is not available.
+    `start` is the scenario or run of a new page, as `Session` takes it. `ready` is called with the address
+    when the page can be opened.
     """
     try:
         listener = socket.create_server((HOST, port))

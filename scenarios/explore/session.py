@@ -25,39 +25,14 @@ Act = Callable[[Callable[[], None]], None]
 class Session(Playback):
     """The controls of a page and its game.
 
-    Parameters
-    ----------
-    start : str or Run
-        Scenario, as `kswarms.scenarios.catalogue.selection.select_scenarios` takes it, or run.
-
-    Attributes
-    ----------
-    source : str
-        Scenario or run that the form was taken from.
-    title : str
-        Title of the source.
-    conditions : dict of str to Condition
-        Conditions of the scenario by name; empty for a run.
-    condition : str
-        Name of the condition that the form was taken from.
-    form : Form
-        Values of the controls.
-    selected : int
-        Number of the selected robot, which may be absent.
-    show_sectors, show_sensors : bool
-        Whether to draw the conflict sectors of all robots, and the sensors of the selected robot.
-
-    Raises
-    ------
-    InputError
-        If the scenario or run does not exist.
-    RunError
-        If the game fails at its start.
+    It starts with a scenario, as `select_scenarios` takes it, or a run: the `source` of the form, with its
+    `title`. `conditions` are those of the scenario, by name. `selected` is the number of the selected robot,
+    which may be absent. A game that fails at its start raises a `RunError`.
     """
 
     def __init__(self, start: str | Run) -> None:
-        self.show_sectors = False
-        self.show_sensors = True
+        self.show_sectors = False  # conflict sectors of all robots
+        self.show_sensors = True  # sensors of the selected robot
         if isinstance(start, Run):
             self.source = f"run {start.digest}"
             self.title = ", ".join(" ".join(label).strip() for label in start.labels)

@@ -21,7 +21,7 @@ TINY = [
 FIT = """
 import math, os, signal, sys
 from pathlib import Path
-from kswarms.analysis.statistics.intervals import bootstrap_intervals
+from kswarms.analysis.statistics.intervals import bootstrap_interval
 from kswarms.scenarios.calibration import shares
 from kswarms.scenarios.calibration.fit import Setup, calibrate
 
@@ -37,7 +37,7 @@ def play(runs):
         yield run, min(1.0, abs(math.log(run.game.parameters.friction / 0.3)) + 0.01 * (run.seed % 7))
 
 setup = Setup(free=("friction", "gamma"), densities=(6,), seeds=1, generations=3, population=4)
-calibrate(setup, {("avoid", 6): 2.0, ("attack", 6): 0.0}, play, bootstrap_intervals, Path(sys.argv[1]))
+calibrate(setup, {("avoid", 6): 2.0, ("attack", 6): 0.0}, play, bootstrap_interval, Path(sys.argv[1]))
 """
 
 

@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.statistics.intervals import bootstrap_intervals
+from kswarms.analysis.statistics.intervals import bootstrap_interval
 from kswarms.model.description.parameters import parse_parameters
 from kswarms.scenarios.calibration import fit
 from kswarms.scenarios.calibration import shares as shares_module
@@ -27,7 +27,7 @@ Played = Generator[tuple[Run, float], None, None]
 
 
 def calibrate(setup: Setup, play: Any, out: Path, fresh: bool = False) -> dict[str, Any]:
-    return fit.calibrate(setup, TARGET, play, bootstrap_intervals, out, fresh)
+    return fit.calibrate(setup, TARGET, play, bootstrap_interval, out, fresh)
 
 
 def share(run: Run, friction: float, distance: float = START["conflict_distance"]) -> float:
@@ -208,7 +208,7 @@ def test_shares_are_saved_during_long_generations(tmp_path: Path, monkeypatch: p
 
 
 def validate(start: NDArray[np.float64], fitted: NDArray[np.float64]) -> dict[str, float]:
-    return fit.validate(start, fitted, np.full(20, 50.0), bootstrap_intervals)
+    return fit.validate(start, fitted, np.full(20, 50.0), bootstrap_interval)
 
 
 def _shares(seed: int, mean: float) -> NDArray[np.float64]:
