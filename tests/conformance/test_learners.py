@@ -19,8 +19,8 @@ import pytest
 from kswarms.agents.actions import AWAY, Action
 from kswarms.agents.conformance import POLICY_CHECKS
 from kswarms.agents.conformance.policies import TWO, play_conflicts, setting, settings
-from kswarms.agents.learning.rewards import REWARDS
-from kswarms.agents.learning.selection_rules import RULES
+from kswarms.agents.learning.rewards import REWARDS, Reward, make_reward
+from kswarms.agents.learning.selection_rules import RULES, Rule, make_rule
 from kswarms.agents.policies.interface import Policy, Setting
 from kswarms.agents.policies.learner import Learner
 from kswarms.agents.policies.registry import POLICIES
@@ -130,9 +130,7 @@ class Unstoppable(Learner):
 
 Check = Callable[[Factory], None]
 CHECKS: Final[dict[Check, Factory]] = {
-    **dict(
-        zip(POLICY_CHECKS, (Outsider, Unseeded, Hive, Unpicklable, Greedy, Unstoppable), strict=True)
-    ),
+    **dict(zip(POLICY_CHECKS, (Outsider, Unseeded, Hive, Unpicklable, Greedy, Unstoppable), strict=True)),
     check_repr_tells_the_swarm_and_no_address: Outsider,
     check_copies_look_alike: Unpicklable,
     check_a_frozen_learner_ignores_conflicts: Unstoppable,
@@ -167,7 +165,17 @@ def test_every_check_refuses_a_bad_policy(check: Check) -> None:
         check(CHECKS[check])
 
 
+@pytest.mark.parametrize(("name", "kind"), [*REWARDS.items(), *RULES.items()])
+def test_a_name_builds_its_class_with_an_informative_repr(name: str, kind: type[Reward | Rule]) -> None:
+    built: Reward | Rule = make_reward(name) if issubclass(kind, Reward) else make_rule(name)
+    text = repr(built)
+    assert text.startswith(f"{kind.__name__}(")
+    assert all(f"{field}=" in text for field in kind.model_fields)
+    assert eval(text, {kind.__name__: kind}) == built == kind()
+
+
 def test_names_can_be_written_in_texts() -> None:
-    for name in POLICIES:
+    for name in (*POLICIES, *REWARDS, *RULES):
         assert name == name.lower().strip()
         assert not set(name) & set("()+,'\" ")
+    assert all(len(set(known.values())) == len(known) for known in (REWARDS, RULES))

@@ -5,7 +5,6 @@ package. Each check takes a class, and has a reward that fails it.
 """
 
 import math
-import random
 from collections.abc import Callable
 from itertools import product
 from typing import Any, Final
@@ -16,21 +15,7 @@ from pydantic import Field
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.conformance import REWARD_CHECKS
 from kswarms.agents.conformance.rewards import cases
-from kswarms.agents.learning.rewards import REWARDS, WLU, IndividualUtility, Reward, make_reward
-
-
-def check_it_is_built_from_its_name(reward: type[Reward]) -> None:
-    name = next((name for name, known in REWARDS.items() if known is reward), None)
-    built = make_reward(name) if name else reward()
-    assert type(built) is reward
-    assert built == reward()
-
-
-def check_repr_shows_name_and_arguments(reward: type[Reward]) -> None:
-    text = repr(reward())
-    assert text.startswith(f"{reward.__name__}(")
-    assert all(f"{field}=" in text for field in reward.model_fields)
-    assert eval(text, {reward.__name__: reward}) == reward()
+from kswarms.agents.learning.rewards import REWARDS, WLU, IndividualUtility, Reward
 
 
 def check_numbers_are_checked(reward: type[Reward]) -> None:
@@ -45,11 +30,8 @@ def check_numbers_are_checked(reward: type[Reward]) -> None:
 def check_program_time_increases_the_reward(reward: type[Reward]) -> None:
     for t_a, t_p, *rest in cases():
         assert reward().of(t_a, t_p + 1.0, *rest) >= reward().of(t_a, t_p, *rest)
-    more = [
-        reward().of(1.0, 2.0, 8, d, inter, 1) > reward().of(1.0, 1.0, 8, d, inter, 1)
-        for d, inter in product((-1, 1), (False, True))
-    ]
-    assert all(more)
+    for d, inter in product((-1, 1), (False, True)):
+        assert reward().of(1.0, 2.0, 8, d, inter, 1) > reward().of(1.0, 1.0, 8, d, inter, 1)
 
 
 def check_it_is_in_seconds(reward: type[Reward]) -> None:
@@ -66,31 +48,11 @@ def check_rewards_are_linear_in_active_sensors(reward: type[Reward]) -> None:
         assert reward().of(t_a, t_p, n_active, *rest) == pytest.approx(expected, abs=1e-9)
 
 
-class Unbuildable(Reward):
-    """Has an argument without a default."""
-
-    delta: float
-
-    def of(self, *conflict: Any) -> float:
-        return 0.0
-
-
-class Mute(WLU):
-    """Has no informative repr."""
-
-    def __repr__(self) -> str:
-        return "<reward>"
-
-
 class Moody(IndividualUtility):
-    """Instances are never equal."""
-
-    def __init__(self, **values: Any) -> None:
-        super().__init__(**values)
-        object.__setattr__(self, "mood", random.random())
+    """Equals only itself."""
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Moody) and vars(self) == vars(other)
+        return self is other
 
     __hash__ = IndividualUtility.__hash__
 
@@ -154,8 +116,6 @@ class Steep(WLU):
 
 Check = Callable[[Any], None]
 CHECKS: Final[dict[Check, type[Reward]]] = {
-    check_it_is_built_from_its_name: Unbuildable,
-    check_repr_shows_name_and_arguments: Mute,
     check_numbers_are_checked: Unchecked,
     **dict(zip(REWARD_CHECKS, (Moody, Thawed, Lenient, Whole, Tired), strict=True)),
     check_program_time_increases_the_reward: Hurried,
@@ -173,15 +133,5 @@ def test_every_reward_passes_every_check(name: str, check: Check) -> None:
 
 @pytest.mark.parametrize("check", CHECKS)
 def test_every_check_refuses_a_bad_reward(check: Check) -> None:
-    try:
+    with pytest.raises((AssertionError, InputError, pytest.fail.Exception)):
         check(CHECKS[check])
-    except (AssertionError, InputError, pytest.fail.Exception):
-        return
-    pytest.fail(f"{check.__name__} accepted {CHECKS[check].__name__}")
-
-
-def test_names_can_be_written_in_texts() -> None:
-    for name in REWARDS:
-        assert name == name.lower().strip()
-        assert not set(name) & set("()+,'\" ")
-    assert len(set(REWARDS.values())) == len(REWARDS)

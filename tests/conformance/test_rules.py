@@ -15,7 +15,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.agents.conformance import RULE_CHECKS
 from kswarms.agents.conformance.rules import ARMS, choose_arms, draws
 from kswarms.agents.learning.bandit import Bandit
-from kswarms.agents.learning.selection_rules import RULES, UCB, Greedy, Rule, UniformRandom, make_rule
+from kswarms.agents.learning.selection_rules import RULES, UCB, Greedy, Rule, UniformRandom
 
 IGNORES_UNTRIED_ARMS: Final = {"uniform-random"}
 """Rules that ignore by definition whether arms were tried (section 1.5)."""
@@ -31,20 +31,6 @@ def tried(values: list[float]) -> Bandit:
     return bandit
 
 
-def check_it_is_built_from_its_name(rule: type[Rule]) -> None:
-    name = next((name for name, known in RULES.items() if known is rule), None)
-    built = make_rule(name) if name else rule()
-    assert type(built) is rule
-    assert built == rule()
-
-
-def check_repr_shows_name_and_arguments(rule: type[Rule]) -> None:
-    text = repr(rule())
-    assert text.startswith(f"{rule.__name__}(")
-    assert all(f"{field}=" in text for field in rule.model_fields)
-    assert eval(text, {rule.__name__: rule}) == rule()
-
-
 def check_every_arm_is_reachable(rule: type[Rule]) -> None:
     for arms in ARMS:
         for arm in range(arms):
@@ -58,11 +44,6 @@ def check_untried_arms_come_first(rule: type[Rule]) -> None:
             assert sorted(choose_arms(rule(), arms, seed)[:arms]) == list(range(arms))
 
 
-def check_the_first_choice_is_random(rule: type[Rule]) -> None:
-    for arms in ARMS:
-        assert {rule().choose(Bandit(arms), draws(seed)) for seed in range(200)} == set(range(arms))
-
-
 def check_ties_are_broken_by_the_robots_stream(rule: type[Rule]) -> None:
     for arms in ARMS:
         by_stream = [rule().choose(tried([0.5] * arms), draws(seed)) for seed in range(200)]
@@ -70,31 +51,11 @@ def check_ties_are_broken_by_the_robots_stream(rule: type[Rule]) -> None:
         assert [rule().choose(tried([0.5] * arms), draws(seed)) for seed in range(200)] == by_stream
 
 
-class Unbuildable(Rule):
-    """Has an argument without a default."""
-
-    gamma: float
-
-    def prefer(self, bandit: Bandit, draws: Generator) -> int:
-        return 0
-
-
-class Mute(Greedy):
-    """Has no informative repr."""
-
-    def __repr__(self) -> str:
-        return "<rule>"
-
-
 class Moody(Greedy):
-    """Instances are never equal."""
-
-    def __init__(self, **values: object) -> None:
-        super().__init__(**values)
-        object.__setattr__(self, "mood", random.random())
+    """Equals only itself."""
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Moody) and vars(self) == vars(other)
+        return self is other
 
     __hash__ = Greedy.__hash__
 
@@ -162,15 +123,10 @@ class Inflating(Greedy):
 
 Check = Callable[[Any], None]
 CHECKS: Final[dict[Check, type[Rule]]] = {
-    check_it_is_built_from_its_name: Unbuildable,
-    check_repr_shows_name_and_arguments: Mute,
     check_every_arm_is_reachable: First,
     check_untried_arms_come_first: UniformRandom,
-    check_the_first_choice_is_random: First,
     check_ties_are_broken_by_the_robots_stream: FirstOfEquals,
-    **dict(
-        zip(RULE_CHECKS, (Moody, Thawed, Lenient, Unseeded, OneTooFar), strict=True)
-    ),
+    **dict(zip(RULE_CHECKS, (Moody, Thawed, Lenient, Unseeded, OneTooFar), strict=True)),
 }
 """Each check with a rule that fails it."""
 
@@ -187,15 +143,5 @@ def test_every_rule_passes_every_check(name: str, check: Check) -> None:
     ("check", "bad"), [*CHECKS.items(), (RULE_CHECKS[-1], Meddler), (RULE_CHECKS[-1], Inflating)]
 )
 def test_every_check_refuses_a_bad_rule(check: Check, bad: type[Rule]) -> None:
-    try:
+    with pytest.raises((AssertionError, InputError, pytest.fail.Exception)):
         check(bad)
-    except (AssertionError, InputError, pytest.fail.Exception):
-        return
-    pytest.fail(f"{check.__name__} accepted {bad.__name__}")
-
-
-def test_names_can_be_written_in_texts() -> None:
-    for name in RULES:
-        assert name == name.lower().strip()
-        assert not set(name) & set("()+,'\" ")
-    assert len(set(RULES.values())) == len(RULES)

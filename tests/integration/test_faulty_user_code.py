@@ -1,7 +1,5 @@
 """User-defined code that passes its trial and fails during games."""
 
-import gc
-import weakref
 from pathlib import Path
 
 import pytest
@@ -138,15 +136,6 @@ def test_a_step_reports_a_stopped_clock() -> None:
     with pytest.raises(RuntimeError, match=r"the clock was stopped at \d+"):  # noqa: PT012  # in which, none can tell
         while model.running:
             model.step()
-
-
-def test_a_finished_game_can_be_freed() -> None:
-    model = ForagingModel(n=4, duration=10)
-    model.play()
-    alive = weakref.ref(model)
-    del model
-    gc.collect()
-    assert alive() is None
 
 
 @pytest.mark.parametrize("swarm", [0, 3, -1])

@@ -26,9 +26,7 @@ from kswarms.model.foraging import ForagingModel
 
 if __name__ == "__main__":
     sweep = json.loads(sys.argv[1])
-    rows = mesa.batch_run(
-        ForagingModel, sweep, number_processes=2, data_collection_period=-1, display_progress=False
-    )
+    rows = mesa.batch_run(ForagingModel, sweep, 2, data_collection_period=-1, display_progress=False)
     print(json.dumps(rows))
 """
 
@@ -77,16 +75,10 @@ def test_an_error_in_user_code_is_one_line_and_nothing_is_written(capsys: pytest
 @pytest.mark.slow
 def test_batch_run_with_two_processes_gives_the_same_results() -> None:
     sweep = {"policies": [f"avoid,{text}" for text in TEXTS], "n": 8, "seed": [0, 1], "duration": 40.0}
-    here = mesa.batch_run(
-        ForagingModel, sweep, number_processes=1, data_collection_period=-1, display_progress=False
-    )
+    here = mesa.batch_run(ForagingModel, sweep, 1, data_collection_period=-1, display_progress=False)
     Path("sweep.py").write_text(SWEEP)
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "sweep.py", json.dumps(sweep)],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    command = [sys.executable, "-W", "error", "sweep.py", json.dumps(sweep)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert sorted(json.loads(done.stdout), key=lambda row: row["RunId"]) == json.loads(json.dumps(here))
     assert {row["policies"] for row in here} == set(sweep["policies"])

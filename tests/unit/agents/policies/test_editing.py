@@ -16,5 +16,5 @@ def test_learning_is_changed_in_the_text_of_the_policy() -> None:
 
 def test_only_learners_are_changed() -> None:
     assert with_learning("mixed", "reward", delta=0.2) == "mixed"
-    changed = with_learning("avoid+learner", "rule", gamma=0.5)
-    assert changed == "avoid+learner(rule='ucb(gamma=0.5)')"
+    changed = with_learning("avoid+learner(reward='wlu(b=2.0)')", "reward", delta=0.2)
+    assert changed == "avoid+learner(reward='wlu(b=2.0, delta=0.2)')"

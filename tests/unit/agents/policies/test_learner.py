@@ -164,26 +164,16 @@ def test_a_frozen_learner_without_data_flees() -> None:
         assert policy.choose(0) == policy.choose(1) == FLIGHT
 
 
-def test_the_only_tried_arm_is_the_best() -> None:
-    policy = learner("inter-learner(reward='single-swarm')")
-    action = policy.choose(0)
-    policy.learn(10.0, 0.0, 8)
-    policy.freeze()
-    assert policy.choose(0) == action
-
-
 def test_a_snapshot_has_all_learned_values() -> None:
     policy = learner()
     teach(policy, 0, {"flight": 3.0, "fight": 1.0}, rounds=1)
     rows = policy.snapshot()
-    assert [(row["opponent"], row["action"]) for row in rows] == [
-        (m, a) for m in (1, 2) for a in ("flight", "fight")
-    ]
+    arms = [(m, a) for m in (1, 2) for a in ("flight", "fight")]
+    assert [(row["opponent"], row["action"]) for row in rows] == arms
     for row in rows:
         bandit, arm = policy.bandits[row["opponent"] - 1], ("flight", "fight").index(row["action"])
-        assert (row["reward"], row["time"], row["count"]) == (
-            *(bandit.reward[arm], bandit.time[arm], bandit.count[arm]),
-        )
+        sums = bandit.reward[arm], bandit.time[arm], bandit.count[arm]
+        assert (row["reward"], row["time"], row["count"]) == sums
         assert row["q"] == bandit.value(arm) or (row["count"] == 0 and math.isnan(row["q"]))
     assert repr(snapshot_of(policy)) == repr(rows)
     assert snapshot_of(make_policy("avoid", setting())) == []

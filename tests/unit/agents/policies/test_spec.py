@@ -11,7 +11,6 @@ from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.conformance.policies import TWO, setting
 from kswarms.agents.learning.rewards import WLU
-from kswarms.agents.policies.editing import with_learning
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.learner import Learner
 from kswarms.agents.policies.spec import deal, make_policy, parse_policies
@@ -107,11 +106,7 @@ def test_literal_arguments_are_not_shared_between_robots(
     assert vars(one)["met"] is not vars(other)["met"]
 
 
-def test_rewards_and_rules_are_changed_in_the_text() -> None:
+def test_only_learners_have_a_reward() -> None:
     (learner,) = parse_policies("inter-learner(otherwise='fight')")
     assert str(learner.learns_by("reward")) == "wlu"
     assert parse_policies("avoid")[0].learns_by("reward") is None
-    changed = with_learning("avoid+learner(reward='wlu(b=2.0)')", "reward", delta=0.2)
-    assert changed == "avoid+learner(reward='wlu(b=2.0, delta=0.2)')"
-    assert with_learning("learner", "rule", "greedy") == "learner(rule='greedy')"
-    assert with_learning("mixed", "rule", "greedy") == "mixed"

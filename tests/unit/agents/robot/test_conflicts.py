@@ -15,7 +15,6 @@ Scene = Callable[..., GameModel]
 AWAY_FROM_IT = [(0.25, 0.05, 0.0)]
 """A robot ahead of one at the origin that heads along x, and facing away from it."""
 
-BEHIND = math.pi
 STEP = 2.96 * 0.1
 """Maximum turn in a period (rad)."""
 
@@ -69,18 +68,9 @@ def test_a_conflict_is_logged_as_at_its_start(scene: Scene) -> None:
     model = scene([(0.0, 0.1, 0.0)], [(x, y + 0.1, a) for x, y, a in ring], record="conflicts", duration=30.0)
     model.robots[1].position = np.array([0.0, 0.1 - 0.17 - 0.38])
     model.env.run()
-    assert (
-        conflicts(model)[0].items()
-        >= {
-            "robot": 0,
-            "start": 0,
-            "x": 0.0,
-            "y": 0.1,
-            "active": 4,
-            "opponent": 2,
-            "seen": (-1, 2, 3, 4, 5, -1, -1, -1),
-        }.items()
-    )
+    start = {"robot": 0, "opponent": 2, "start": 0, "x": 0.0, "y": 0.1}
+    sensed = {"active": 4, "seen": (-1, 2, 3, 4, 5, -1, -1, -1)}
+    assert conflicts(model)[0].items() >= {**start, **sensed}.items()
 
 
 def test_walls_count_for_a_flight(scene: Scene) -> None:
@@ -121,7 +111,7 @@ def test_the_nearest_robot_ahead_is_met(scene: Scene) -> None:
         (0.25, math.radians(62), True),
         (0.25, math.radians(-62), True),
         (0.25, math.radians(63), False),
-        (0.25, BEHIND, False),
+        (0.25, math.pi, False),
     ],
 )
 def test_a_near_robot_ahead_starts_a_conflict(
@@ -164,13 +154,9 @@ def test_program_time_is_between_action_and_next_conflict(scene: Scene) -> None:
 
 @pytest.mark.parametrize("preempt", [False, True])
 def test_another_robot_ahead_interrupts_an_action_only_with_preempt(scene: Scene, preempt: bool) -> None:
-    model = scene(
-        [(0.0, 0.0, 0.0)],
-        [(0.25, 0.0, 0.0), (0.0, 0.8, 1.0)],
-        policies="attack,avoid",
-        changes={"preempt": preempt, "fight_duration": 3.0},
-        record="conflicts",
-    )
+    changes = {"preempt": preempt, "fight_duration": 3.0}
+    others = [(0.25, 0.0, 0.0), (0.0, 0.8, 1.0)]
+    model = scene([(0.0, 0.0, 0.0)], others, policies="attack,avoid", changes=changes, record="conflicts")
     model.env.run(until=10)
     assert model.states.opponent[0] == 1
     model.robots[2].position = np.array([pose(model)[0] + 0.18, 0.05])
@@ -188,12 +174,9 @@ def test_another_robot_ahead_interrupts_an_action_only_with_preempt(scene: Scene
 
 def test_the_end_of_an_interrupted_turn_has_no_effect(scene: Scene) -> None:
     # A slow turn to the left of 34 periods is interrupted by a longer one to the right.
-    model = scene(
-        [(0.0, 0.0, 0.0)],
-        [(0.3 * math.cos(1.0), 0.3 * math.sin(1.0), 1.0), (0.0, 0.8, 1.0)],
-        policies="attack,avoid",
-        changes={"preempt": True, "turning_rate": 0.3},
-    )
+    others = [(0.3 * math.cos(1.0), 0.3 * math.sin(1.0), 1.0), (0.0, 0.8, 1.0)]
+    changes = {"preempt": True, "turning_rate": 0.3}
+    model = scene([(0.0, 0.0, 0.0)], others, policies="attack,avoid", changes=changes)
     model.env.run(until=5)
     heading = pose(model)[2]
     model.robots[1].position = np.array([-0.5, 0.0])
@@ -214,12 +197,8 @@ def test_the_same_robot_does_not_interrupt(scene: Scene) -> None:
 
 def test_a_conflict_drops_a_pending_turn(scene: Scene) -> None:
     # After a leg of one period a slow turn begins; then a robot comes ahead.
-    model = scene(
-        [(0.0, 0.0, 0.0)],
-        [(0.0, 0.8, 1.0)],
-        policies="attack,avoid",
-        changes={"turning_rate": 0.05, "leg_mean": 1e-3},
-    )
+    changes = {"turning_rate": 0.05, "leg_mean": 1e-3}
+    model = scene([(0.0, 0.0, 0.0)], [(0.0, 0.8, 1.0)], policies="attack,avoid", changes=changes)
     turn_rate = model.states.turn_rate
     model.env.run(until=4)
     assert turn_rate[0] != 0

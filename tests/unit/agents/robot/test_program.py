@@ -15,9 +15,6 @@ from kswarms.model.game_model import GameModel
 
 Scene = Callable[..., GameModel]
 
-AWAY_FROM_IT = [(0.25, 0.05, 0.0)]
-"""A robot ahead of one at the origin that heads along x, and facing away from it."""
-
 STEP = 2.96 * 0.1
 """Maximum turn in a period (rad)."""
 
@@ -105,12 +102,11 @@ def test_pucks_are_picked_up_and_deposited_during_actions(scene: Scene) -> None:
 
 @pytest.mark.parametrize(("drive", "drive_action"), [(0.6, 0.6), (0.7, 0.6), (0.3, 0.9)])
 def test_program_and_action_have_their_own_drives(scene: Scene, drive: float, drive_action: float) -> None:
-    alone = scene([(0.0, 0.0, 0.0)], drives=(drive, drive_action))
-    carrying = scene([(-0.3, 0.0, math.pi)], drives=(drive, drive_action))
+    drives = (drive, drive_action)
+    alone = scene([(0.0, 0.0, 0.0)], drives=drives)
+    carrying = scene([(-0.3, 0.0, math.pi)], drives=drives)
     carry(carrying)
-    fighter = scene(
-        [(0.0, 0.0, 0.0)], [(0.3, 0.0, 0.0)], policies="attack,avoid", drives=(drive, drive_action)
-    )
+    fighter = scene([(0.0, 0.0, 0.0)], [(0.3, 0.0, 0.0)], policies="attack,avoid", drives=drives)
     for model, x, expected in ((alone, 0.0, drive), (carrying, -0.3, drive), (fighter, 0.0, drive_action)):
         model.env.run(until=3)
         assert abs(pose(model)[0] - x) == pytest.approx(3 * 0.1 * 0.25 * expected)
@@ -121,17 +117,15 @@ def test_turning_does_not_depend_on_the_drive(scene: Scene) -> None:
         model = scene([(0.0, 0.0, math.pi / 2)], changes={"base_range": 1.9}, drives=(drive, drive))
         carry(model)
         model.env.run(until=3)
-        assert pose(model)[2] == pytest.approx(
-            math.pi / 2 + 3 * (math.pi / 2) / math.ceil(math.pi / 2 / STEP)
-        )
+        turned = 3 * (math.pi / 2) / math.ceil(math.pi / 2 / STEP)
+        assert pose(model)[2] == pytest.approx(math.pi / 2 + turned)
 
 
 def test_a_wander_turn_is_its_draw_in_whole_periods(scene: Scene) -> None:
     # Legs of one period, far from the walls.
     limit = math.radians(40)
-    model = scene(
-        [(0.0, 0.0, 0.0)], changes={"leg_mean": 1e-6, "wander_turn": limit, "station_radius": 1e-6}, seed=6
-    )
+    changes = {"leg_mean": 1e-6, "wander_turn": limit, "station_radius": 1e-6}
+    model = scene([(0.0, 0.0, 0.0)], changes=changes, seed=6)
     draws = stream(6, 0, Purpose.WANDER)
     heading, now = 0.0, 0
     for _ in range(20):
@@ -179,9 +173,8 @@ def test_an_escape_away_points_away_from_the_walls_met(
 
 def test_walls_are_ignored_in_action_and_on_the_way_home(scene: Scene) -> None:
     # A fighter follows its opponent along and into the wall.
-    model = scene(
-        [(0.5, 0.9, 0.0)], [(0.75, 0.9, 0.0)], policies="attack,avoid", changes={"fight_duration": 4.0}
-    )
+    changes = {"fight_duration": 4.0}
+    model = scene([(0.5, 0.9, 0.0)], [(0.75, 0.9, 0.0)], policies="attack,avoid", changes=changes)
     model.env.run(until=39)
     assert model.robots[0].state == "A"
     assert pose(model)[2] == pytest.approx(0.0)
@@ -229,10 +222,8 @@ def test_a_new_leg_begins_after_an_action(scene: Scene) -> None:
 
 
 def test_the_nearest_robot_gets_the_last_puck(scene: Scene) -> None:
-    station = (0.0, 0.66)
-    model = scene(
-        [(-0.09, station[1], math.pi), (0.085, station[1], 0.0)], [(0.0, station[1] + 0.15, 1.57)], supply=1
-    )
+    # The station is at (0, 0.66).
+    model = scene([(-0.09, 0.66, math.pi), (0.085, 0.66, 0.0)], [(0.0, 0.81, 1.57)], supply=1)
     model.env.run(until=1)
     assert [robot.carrying for robot in model.robots] == [False, True, False]
     assert model.supply == [0, 1]

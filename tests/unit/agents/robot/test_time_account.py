@@ -152,13 +152,9 @@ def test_the_bandits_hold_the_sums_over_the_table(played: GameModel) -> None:
     names = [action.name for action in played.game.action_set]
     for robot, rows in learned_rows(played):
         for swarm, bandit in robot.policy.bandits.items():
+            learned = [row for row in rows if not math.isnan(row["reward"])]
             for arm, name in enumerate(names):
-                own = [
-                    row
-                    for row in rows
-                    if (row["opponent_swarm"], row["action"]) == (swarm + 1, name)
-                    and not math.isnan(row["reward"])
-                ]
+                own = [row for row in learned if (row["opponent_swarm"], row["action"]) == (swarm + 1, name)]
                 reward = math.fsum(row["reward"] for row in own)
                 time = math.fsum(row["t_a"] + row["t_p"] for row in own)
                 assert bandit.count[arm] == len(own)
@@ -196,10 +192,9 @@ def test_every_choice_follows_from_all_closed_conflicts(played: GameModel) -> No
             if row["opponent_swarm"] - 1 not in robot.policy.bandits:
                 continue
             known = {}
+            earlier = [other for other in rows[:k] if other["opponent_swarm"] == row["opponent_swarm"]]
             for name in ("flight", "fight"):
-                own = [
-                    r for r in rows[:k] if (r["opponent_swarm"], r["action"]) == (row["opponent_swarm"], name)
-                ]
+                own = [other for other in earlier if other["action"] == name]
                 time = math.fsum(r["t_a"] + r["t_p"] for r in own)
                 known[name] = (len(own), math.fsum(r["reward"] for r in own) / time if own else math.nan)
             untried = [name for name, (count, _) in known.items() if count == 0]

@@ -5,20 +5,8 @@ import numpy as np
 import pytest
 
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.theory.games import (
-    MET,
-    NATURE,
-    OWN,
-    NormalForm,
-    exact_potential,
-    extensive_form,
-    fold,
-    is_pairwise_zero_sum,
-    is_potential,
-    polymatrix,
-    swarm_payoffs,
-    zero_sum,
-)
+from kswarms.agents.theory import games
+from kswarms.agents.theory.games import MET, NATURE, OWN, NormalForm, zero_sum
 from kswarms.agents.theory.swarms import is_zero_sum_difference
 
 ACTIONS = ("flight", "fight")
@@ -43,19 +31,19 @@ def test_a_game_with_a_potential_and_one_without() -> None:
     assert potential.tolist() == [[0, 2], [2, 3]]
     assert PENNIES.potential() is None
     assert SKEWED.potential() is None
-    assert is_potential(potential + 7.0, [DILEMMA.own, DILEMMA.met])
-    assert not is_potential(DILEMMA.own, [DILEMMA.own, DILEMMA.met])
+    assert games.is_potential(potential + 7.0, [DILEMMA.own, DILEMMA.met])
+    assert not games.is_potential(DILEMMA.own, [DILEMMA.own, DILEMMA.met])
 
 
 def test_a_potential_of_three_players() -> None:
     shared = np.arange(12.0).reshape(2, 3, 2) ** 2
     # Terms that do not depend on the own action have no effect.
     payoffs = [shared + np.arange(6.0).reshape(1, 3, 2), shared - np.arange(4.0).reshape(2, 1, 2), shared]
-    potential = exact_potential(payoffs)
+    potential = games.exact_potential(payoffs)
     assert potential is not None
     assert np.array_equal(potential, shared - shared[0, 0, 0])
     payoffs[2] = shared + np.arange(2.0) * np.arange(3.0).reshape(1, 3, 1)
-    assert exact_potential(payoffs) is None
+    assert games.exact_potential(payoffs) is None
 
 
 @pytest.mark.parametrize("payoffs", [[[1.0, 2.0]], [[1.0, np.nan], [0.0, 1.0]]])
@@ -80,7 +68,7 @@ def test_payoffs_do_not_change() -> None:
 
 
 def test_nature_draws_a_swarm_and_both_players_act_simultaneously() -> None:
-    tree = extensive_form({1: DILEMMA, 2: SKEWED}, {1: 0.25, 2: 0.75})
+    tree = games.extensive_form({1: DILEMMA, 2: SKEWED}, {1: 0.25, 2: 0.75})
     assert nx.is_arborescence(tree)
     assert [tree.nodes[node]["player"] for node in ((), (2,), (2, "fight"))] == [NATURE, OWN, MET]
     assert tree.edges[(), (2,)] == {"action": "S2", "chance": 0.75}
@@ -95,7 +83,7 @@ def test_nature_draws_a_swarm_and_both_players_act_simultaneously() -> None:
 
 
 def test_the_tree_folds_into_a_normal_form_for_each_swarm() -> None:
-    forms = fold(extensive_form({1: DILEMMA, 2: SKEWED, 3: PENNIES}))
+    forms = games.fold(games.extensive_form({1: DILEMMA, 2: SKEWED, 3: PENNIES}))
     assert list(forms) == [1, 2, 3]
     for form, source in zip(forms.values(), (DILEMMA, SKEWED, PENNIES), strict=True):
         assert (form.rows, form.columns) == (source.rows, source.columns)
@@ -104,55 +92,55 @@ def test_the_tree_folds_into_a_normal_form_for_each_swarm() -> None:
 
 
 def test_a_tree_with_an_observed_first_move_does_not_fold() -> None:
-    tree = extensive_form({1: DILEMMA})
+    tree = games.extensive_form({1: DILEMMA})
     tree.nodes[1, "fight"]["information"] = (1, MET, "saw a fight")
     with pytest.raises(InputError, match=r"S1=.*must be one information set"):
-        fold(tree)
-    tree = extensive_form({1: DILEMMA})
+        games.fold(tree)
+    tree = games.extensive_form({1: DILEMMA})
     tree.remove_node((1, "fight", "fight"))
     with pytest.raises(InputError, match=r"S1=.*must be one information set"):
-        fold(tree)
+        games.fold(tree)
 
 
 @pytest.mark.parametrize("chances", [{1: 0.5, 2: 0.6}, {1: 1.0}, {1: 1.5, 2: -0.5}])
 def test_chances_must_be_probabilities(chances: dict[int, float]) -> None:
     with pytest.raises(InputError, match="must be probabilities of the swarms"):
-        extensive_form({1: DILEMMA, 2: PENNIES}, chances)
+        games.extensive_form({1: DILEMMA, 2: PENNIES}, chances)
 
 
 def test_at_least_one_swarm_is_required() -> None:
     with pytest.raises(InputError, match="must have a game for at least one swarm"):
-        extensive_form({})
+        games.extensive_form({})
 
 
 def test_the_polymatrix_game_has_loops_within_and_edges_between_swarms() -> None:
-    graph = polymatrix({(1, 2): PENNIES, (1, 1): DILEMMA, (2, 2): DILEMMA})
+    graph = games.polymatrix({(1, 2): PENNIES, (1, 1): DILEMMA, (2, 2): DILEMMA})
     assert sorted(map(sorted, graph.edges)) == [[1, 1], [1, 2], [2, 2]]
     assert nx.number_of_selfloops(graph) == 2
     assert graph.nodes[2] == {"actions": ACTIONS}
-    assert is_pairwise_zero_sum(graph)
-    assert not is_pairwise_zero_sum(polymatrix({(1, 2): DILEMMA}))
+    assert games.is_pairwise_zero_sum(graph)
+    assert not games.is_pairwise_zero_sum(games.polymatrix({(1, 2): DILEMMA}))
 
 
 def test_payoffs_of_swarms_that_act_as_one_player() -> None:
-    graph = polymatrix({(1, 1): DILEMMA, (1, 2): PENNIES, (2, 2): DILEMMA})
-    payoffs = swarm_payoffs(graph)
+    graph = games.polymatrix({(1, 1): DILEMMA, (1, 2): PENNIES, (2, 2): DILEMMA})
+    payoffs = games.swarm_payoffs(graph)
     assert payoffs.shape == (2, 2, 2)
     # S1 flees and S2 fights: 3 + 3 within S1 and −1 between; 1 + 1 within S2 and 1 between.
     assert payoffs[:, 0, 1].tolist() == [5.0, 3.0]
     assert is_zero_sum_difference(payoffs.reshape(2, -1).T)
     three = {(k, m): PENNIES if k < m else DILEMMA for k in (1, 2, 3) for m in (1, 2, 3) if k <= m}
-    assert not is_zero_sum_difference(swarm_payoffs(polymatrix(three)).reshape(3, -1).T)
+    assert not is_zero_sum_difference(games.swarm_payoffs(games.polymatrix(three)).reshape(3, -1).T)
     del three[1, 1], three[2, 2], three[3, 3]
-    assert is_zero_sum_difference(swarm_payoffs(polymatrix(three)).reshape(3, -1).T)
+    assert is_zero_sum_difference(games.swarm_payoffs(games.polymatrix(three)).reshape(3, -1).T)
 
 
 @pytest.mark.parametrize("pairs", [[(1, 2), (2, 3)], [(2, 1)], [(1, 3), (1, 1)], [(0, 1)], []])
 def test_each_pair_of_swarms_has_one_game(pairs: list[tuple[int, int]]) -> None:
     with pytest.raises(InputError, match="must have one game for each pair"):
-        polymatrix(dict.fromkeys(pairs, PENNIES))
+        games.polymatrix(dict.fromkeys(pairs, PENNIES))
 
 
 def test_a_swarm_has_the_same_actions_in_all_games() -> None:
     with pytest.raises(InputError, match="must have swarm 2's actions of its other games"):
-        polymatrix({(1, 1): DILEMMA, (1, 2): SKEWED, (2, 2): DILEMMA})
+        games.polymatrix({(1, 1): DILEMMA, (1, 2): SKEWED, (2, 2): DILEMMA})

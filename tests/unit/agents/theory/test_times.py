@@ -2,30 +2,8 @@
 
 import pytest
 
-from kswarms.agents.theory.estimates import (
-    estimated_wlu,
-    identical_swarms_wlu,
-    kappa,
-    program_weight,
-    program_weight_of_equals,
-)
-from kswarms.agents.theory.times import (
-    Crowd,
-    Interaction,
-    absent_to_one,
-    absent_to_swarm,
-    approximate_wlu,
-    delta,
-    gamma,
-    inter_utility,
-    intra_utility,
-    mixed_utility,
-    pair_utility,
-    present_to_own_swarm,
-    time_utility,
-    wlu_of_equal_times,
-    wlu_per_robot_met,
-)
+from kswarms.agents.theory import estimates, times
+from kswarms.agents.theory.times import Interaction
 
 OWN = Interaction(t_a=2.0, t_p=7.0, alpha=3.0, beta=4.0)  # 28 − 6 = 22
 MATES = [Interaction(1.0, 5.0, 2.0, 3.0), Interaction(4.0, 2.0, 0.5, 1.0), Interaction(0.0, 6.0, 9.0, 2.0)]
@@ -35,54 +13,54 @@ OPPONENTS = [Interaction(3.0, 5.0, 2.0, 2.0), Interaction(2.0, 8.0, 1.0, 0.5)]
 
 
 def test_within_a_swarm() -> None:
-    assert time_utility(*OWN) == 22.0
-    assert intra_utility(3, *OWN) == 66.0
-    assert intra_utility(0, *OWN) == 0.0
+    assert times.time_utility(*OWN) == 22.0
+    assert times.intra_utility(3, *OWN) == 66.0
+    assert times.intra_utility(0, *OWN) == 0.0
 
 
 def test_between_swarms() -> None:
-    assert pair_utility(OWN, OPPONENTS[0]) == 22.0 - 4.0
+    assert times.pair_utility(OWN, OPPONENTS[0]) == 22.0 - 4.0
     # 2 · (28 − 7) − 2 · (6 − 4).
-    assert inter_utility(OWN, OPPONENTS) == 38.0
-    assert inter_utility(OWN, []) == 0.0
+    assert times.inter_utility(OWN, OPPONENTS) == 38.0
+    assert times.inter_utility(OWN, []) == 0.0
 
 
 def test_mixed() -> None:
-    assert mixed_utility(OWN, 3, OPPONENTS) == 66.0 + 38.0
-    assert mixed_utility(OWN, 3, OPPONENTS[:1], OPPONENTS[1:], []) == 66.0 + 18.0 + 20.0
-    assert mixed_utility(OWN, 2) == 44.0
+    assert times.mixed_utility(OWN, 3, OPPONENTS) == 66.0 + 38.0
+    assert times.mixed_utility(OWN, 3, OPPONENTS[:1], OPPONENTS[1:], []) == 66.0 + 18.0 + 20.0
+    assert times.mixed_utility(OWN, 2) == 44.0
 
 
 def test_absence_and_presence() -> None:
-    assert absent_to_one(MATES[0]) == 18.0
-    assert absent_to_swarm(MATES) == pytest.approx(29.0 + 7.0)
-    assert absent_to_swarm(OPPONENTS) == 14.0 + 7.0
-    assert present_to_own_swarm(MATES) == pytest.approx(29.0 - 4.0)
-    assert absent_to_swarm([]) == present_to_own_swarm([]) == 0.0
+    assert times.absent_to_one(MATES[0]) == 18.0
+    assert times.absent_to_swarm(MATES) == pytest.approx(29.0 + 7.0)
+    assert times.absent_to_swarm(OPPONENTS) == 14.0 + 7.0
+    assert times.present_to_own_swarm(MATES) == pytest.approx(29.0 - 4.0)
+    assert times.absent_to_swarm([]) == times.present_to_own_swarm([]) == 0.0
 
 
 def test_the_wlu_of_times_has_the_corrected_sign() -> None:
     # (3 + 2 · 2) · (28 − 6) − (4 + 7) + (2 · 8 + 7 − 14); the minus of the source would give 134.
-    assert approximate_wlu(OWN, MATES, OPPONENTS) == pytest.approx(154.0 - 11.0 + 9.0)
-    assert approximate_wlu(OWN, MATES, []) == pytest.approx(66.0 - 11.0)
-    assert approximate_wlu(OWN, [], []) == 0.0
+    assert times.approximate_wlu(OWN, MATES, OPPONENTS) == pytest.approx(154.0 - 11.0 + 9.0)
+    assert times.approximate_wlu(OWN, MATES, []) == pytest.approx(66.0 - 11.0)
+    assert times.approximate_wlu(OWN, [], []) == 0.0
 
 
 def test_equal_times() -> None:
-    crowd = Crowd(3, 2, alpha_i=3.0, beta_i=4.0, alpha_k=2.0, beta_k=5.0, alpha_m=1.5, beta_m=0.5)
-    assert gamma(crowd) == 7 * 4.0 - 2 * 0.5
-    assert delta(crowd) == (2 * 0.5 - 3 * 5.0) + (4 * 1.5 - 3 * 2.0 - 7 * 3.0)
-    assert wlu_of_equal_times(crowd, t_a=2.0, t_p=10.0) == 270.0 - 70.0
-    assert wlu_per_robot_met(crowd, t_a=2.0, t_p=10.0) == pytest.approx(40.0)
+    crowd = times.Crowd(3, 2, alpha_i=3.0, beta_i=4.0, alpha_k=2.0, beta_k=5.0, alpha_m=1.5, beta_m=0.5)
+    assert times.gamma(crowd) == 7 * 4.0 - 2 * 0.5
+    assert times.delta(crowd) == (2 * 0.5 - 3 * 5.0) + (4 * 1.5 - 3 * 2.0 - 7 * 3.0)
+    assert times.wlu_of_equal_times(crowd, t_a=2.0, t_p=10.0) == 270.0 - 70.0
+    assert times.wlu_per_robot_met(crowd, t_a=2.0, t_p=10.0) == pytest.approx(40.0)
 
 
 def test_estimates() -> None:
-    assert estimated_wlu(0.5, t_a=2.0, t_p=6.0, n_active=4, sign=-1, delta=0.25) == 3.0 - 0.25
-    assert estimated_wlu(0.5, 2.0, 6.0, 4, -1, -0.25) == 3.0 - 0.25  # Δ counts by its size
+    assert estimates.estimated_wlu(0.5, t_a=2.0, t_p=6.0, n_active=4, sign=-1, delta=0.25) == 3.0 - 0.25
+    assert estimates.estimated_wlu(0.5, 2.0, 6.0, 4, -1, -0.25) == 3.0 - 0.25  # Δ counts by its size
     # 5 + ((3 − 1) · 2 − 2 · 1 · 3)/(4 · 2) · 4.
-    assert identical_swarms_wlu(1, 3, t_a=4.0, t_p=5.0, alpha=3.0, beta=2.0) == 4.0
-    assert program_weight(1, 3, b=1.5) == 2.5 / 4
-    assert program_weight_of_equals(7 / 6) == pytest.approx(11 / 12)
-    assert program_weight_of_equals(1.0) == 1.0
-    assert kappa(2.0, 2.0, 2.0) == 3.0
-    assert kappa(1.0, 2.0, 4.0) == 1.75
+    assert estimates.identical_swarms_wlu(1, 3, t_a=4.0, t_p=5.0, alpha=3.0, beta=2.0) == 4.0
+    assert estimates.program_weight(1, 3, b=1.5) == 2.5 / 4
+    assert estimates.program_weight_of_equals(7 / 6) == pytest.approx(11 / 12)
+    assert estimates.program_weight_of_equals(1.0) == 1.0
+    assert estimates.kappa(2.0, 2.0, 2.0) == 3.0
+    assert estimates.kappa(1.0, 2.0, 4.0) == 1.75
