@@ -25,12 +25,12 @@ from kswarms.analysis.statistics.means import mean_by_n
 from kswarms.analysis.text_tables import span
 
 CONDITION_COLOURS: Final = tuple(sns.color_palette("colorblind").as_hex())
-CONDITION_MARKERS: Final = "os^DvPX"
+_CONDITION_MARKERS: Final = "os^DvPX"
 
 _MAX_TICKS: Final = 16
 """With more densities than this, matplotlib chooses the ticks."""
 _MAX_GAP: Final = 4
-"""Points of single seeds are at most a quarter of this from their density (robots)."""
+"""Maximum gap between densities (robots); points of single seeds are shifted by at most a quarter of it."""
 _LEGEND_LINE, _LETTER = 0.75, 0.08
 """Width of the line and of a letter in a legend (inches)."""
 
@@ -61,11 +61,11 @@ def condition_style(index: int, swarm: int | None = None) -> LineStyle:
     colour = CONDITION_COLOURS[index % len(CONDITION_COLOURS)]
     if swarm is not None:
         return replace(swarm_style(swarm), colour=colour)
-    return LineStyle(colour, "-", CONDITION_MARKERS[index % len(CONDITION_MARKERS)])
+    return LineStyle(colour, "-", _CONDITION_MARKERS[index % len(_CONDITION_MARKERS)])
 
 
 def curve_style(curve: Curve) -> LineStyle:
-    """Return the line style of a curve: the source's for a swarm, unless there are several conditions."""
+    """Return the line style of a curve: by condition if there are several, otherwise by swarm."""
     if curve.condition is not None:
         return condition_style(curve.condition, curve.swarm)
     assert curve.swarm is not None  # the only condition has a curve for each swarm

@@ -31,7 +31,7 @@ def check_film(path: Path) -> None:
 def write_film(path: Path, images: Iterable[Image.Image], fps: int) -> None:
     """Write images as a film with `fps` images per second.
 
-    There is at least one image; all have the same size, and both sides are even. `InputError` as in
+    `images` has at least one image; all have the same size, with even width and height. `InputError` as in
     `check_film`, or if the file cannot be written; then an existing file is unchanged.
     """
     check_film(path)
@@ -40,9 +40,10 @@ def write_film(path: Path, images: Iterable[Image.Image], fps: int) -> None:
 
 
 def write_sheet(path: Path, images: Sequence[Image.Image]) -> None:
-    """Write images of the same size, at least one, side by side as one PNG.
+    """Write images side by side as one PNG.
 
-    `InputError` if the file cannot be written; then an existing file is unchanged.
+    `images` has at least one image; all have the same size. `InputError` if the file cannot be written; then
+    an existing file is unchanged.
     """
     width, height = images[0].size
     columns = min(_MAX_COLUMNS, math.ceil(math.sqrt(len(images))))

@@ -18,7 +18,7 @@ _WALL, _STATION, _PUCK, _WHITE = "#333333", "#2b2b2b", "#111111", "#ffffff"
 _TINT: Final = 0.22
 """Share of the swarm's colour in its base; the rest is white."""
 _OVERSAMPLING: Final = 3
-"""Images are painted this many times as large, each way, and then reduced."""
+"""Images are painted larger by this factor in each direction, and then reduced."""
 _MARGIN: Final = 0.03
 """Width of the margin around the arena, relative to half its side."""
 _HEADER: Final = 0.06
@@ -26,7 +26,7 @@ _HEADER: Final = 0.06
 
 
 class Places(Protocol):
-    """The arena that is drawn, such as a `kswarms.model.description.arena.Arena`; lengths in m."""
+    """Arena to draw, such as a `kswarms.model.description.arena.Arena`; lengths in m."""
 
     @property
     def half(self) -> float:
@@ -52,8 +52,8 @@ class Places(Protocol):
 class ArenaPainter:
     """Painter of one arena.
 
-    `robot_radius` is in m. The images have the size `width` × `height` (pixels); both are rounded to even
-    numbers, as video formats require.
+    `robot_radius` is in m. Images have `width` × `height` pixels; both are even, as video formats require (an
+    odd width is rounded down).
     """
 
     def __init__(self, places: Places, robot_radius: float, width: int) -> None:
@@ -144,7 +144,7 @@ def _blend(one: str, other: str, share: float) -> tuple[int, ...]:
 
 
 def palette() -> Image.Image:
-    """Return an image whose palette holds the colours of all images and the mixtures at smooth edges.
+    """Return an image with a palette of all colours, and of their mixtures at smooth edges.
 
     A palette from the first image of a film would lack the colours that appear later.
     """

@@ -26,7 +26,7 @@ def coverage(runs: pd.DataFrame, plan: Mapping[str, PlannedScenario]) -> pd.Data
     pandas.DataFrame
         One row for each `scenario`, in the order of the plan: `planned` (int64), the number of games in the
         plan; `games` (int64), how many of them exist; `missing` (str), a description of the others, empty if
-        there are none. Conditions with the same games count them separately.
+        there are none. A game that two conditions share counts twice.
     """
     points = runs[["scenario", "condition", "n", "seed"]].drop_duplicates()
     rows = []
@@ -63,7 +63,10 @@ def _absent(planned: Iterable[object], found: pd.Series) -> str:
 
 
 def coverage_table(frame: pd.DataFrame) -> TextTable:
-    """Return a table of the partly played scenarios of `coverage`; its caption has the others."""
+    """Return the partly played scenarios of `coverage` as a table.
+
+    The caption has the number of complete scenarios and the ids of those without games.
+    """
     absent = frame[frame["games"] == 0]["scenario"]
     partial = frame[(frame["games"] > 0) & (frame["missing"] != "")]
     complete = int((frame["missing"] == "").sum())

@@ -1,5 +1,6 @@
 """Assembly of the report from its parts."""
 
+import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
@@ -45,7 +46,7 @@ SourceTables = Mapping[str, tuple[str, Sequence[str]]]
 """Title and scenarios of each table of the source, by id."""
 
 Step = Callable[[], Iterable[tuple[str, Part]]]
-"""Makes parts and names the chapter of each."""
+"""Returns parts, each with its chapter."""
 
 Progress = Callable[[Sequence[Step]], Iterable[Step]]
 """Yields steps one by one, as a progress bar does."""
@@ -169,4 +170,4 @@ def _summary(results: Results, covered: pd.DataFrame) -> list[str]:
 
 
 def _anchor(title: str) -> str:
-    return "-".join("".join(sign if sign.isalnum() else " " for sign in title.lower()).split())
+    return re.sub(r"\W+", "-", title.lower()).strip("-")

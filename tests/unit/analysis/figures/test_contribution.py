@@ -12,6 +12,7 @@ from kswarms.analysis.measures.contribution import mean_contributions, of_questi
 from kswarms.analysis.results.records import read_contributions
 from kswarms.analysis.tables.contribution import contribution_tables
 from tests.helpers.contribution_rows import ROBOTS, SEEDS, contribution_rows, noise
+from tests.helpers.legends import legend_texts
 
 
 def rows_of_two_swarms() -> pd.DataFrame:
@@ -27,8 +28,7 @@ def test_the_scatter_shows_each_robot_where_its_means_are() -> None:
     pucks, time = figure.axes
     assert (pucks.get_ylabel()[-7:], time.get_ylabel()[-3:]) == ("(pucks)", "(s)")
     assert "fig-6.4b: a title, N = 16" in figure.get_suptitle()
-    labels = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert labels == ["S1: attack", "S2: inter-learner"]
+    assert legend_texts(figure) == ["S1: attack", "S2: inter-learner"]
     found = mean_contributions(rows)
     for swarm, bars in zip((1, 2), time.containers, strict=True):
         robots = found[(found["swarm"] == swarm) & (found["robot"] >= 0)]
@@ -38,12 +38,8 @@ def test_the_scatter_shows_each_robot_where_its_means_are() -> None:
 
 def test_the_tables_name_robots_swarms_and_intervals() -> None:
     (_, robots), (_, ranks), (_, freed) = contribution_tables(rows_of_two_swarms())
-    assert [line[0] for line in robots[1:]] == [
-        *map(str, range(10, 18)),
-        "mean of S1",
-        *map(str, range(20, 28)),
-        "mean of S2",
-    ]
+    of_s1, of_s2 = map(str, range(10, 18)), map(str, range(20, 28))
+    assert [line[0] for line in robots[1:]] == [*of_s1, "mean of S1", *of_s2, "mean of S2"]
     assert robots[1][2] == "2.00 (2.00 … 2.00)"
     assert [line[:2] for line in ranks[1:]] == [["S1", "pucks"], ["S1", "s"], ["S2", "pucks"], ["S2", "s"]]
     assert ranks[1][2:] == ["–", "–"]
@@ -52,9 +48,8 @@ def test_the_tables_name_robots_swarms_and_intervals() -> None:
 
 
 def test_a_figure_is_written_from_the_table(tmp_path: Path) -> None:
-    pd.concat([contribution_rows(reward=noise()), contribution_rows(n=26)]).to_parquet(
-        tmp_path / "contribution.parquet"
-    )
+    rows = pd.concat([contribution_rows(reward=noise()), contribution_rows(n=26)])
+    rows.to_parquet(tmp_path / "contribution.parquet")
     assert len(read_contributions(tmp_path)) == 2 * SEEDS * ROBOTS
     path = write_contribution_figure(tmp_path, n=16)
     assert path == tmp_path / "figures" / "contribution-fig-6.4b.png"

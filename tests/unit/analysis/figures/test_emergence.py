@@ -3,17 +3,17 @@
 import numpy as np
 
 from kswarms.analysis.figures.emergence import choices_figure, preferences_figure, values_figure
+from tests.helpers.legends import legend_texts
 from tests.helpers.result_rows import learning_conflicts, robots
 
 
 def test_choices_and_q_are_drawn_with_a_panel_for_each_bandit() -> None:
-    (axes,) = choices_figure(learning_conflicts(), "t").axes
-    assert axes.get_title() == "S2 against S1"
-    legend = [text.get_text() for text in axes.figure.legends[0].get_texts()]
-    assert legend == ["fight"]  # the other share is the rest
-    (axes,) = values_figure(learning_conflicts(), "t").axes
-    assert [text.get_text() for text in axes.figure.legends[0].get_texts()] == ["fight", "flight"]
-    assert axes.get_ylabel() == "Q (reward per second)"
+    figure = choices_figure(learning_conflicts(), "t")
+    assert figure.axes[0].get_title() == "S2 against S1"
+    assert legend_texts(figure) == ["fight"]  # the other share is the rest
+    figure = values_figure(learning_conflicts(), "t")
+    assert legend_texts(figure) == ["fight", "flight"]
+    assert figure.axes[0].get_ylabel() == "Q (reward per second)"
     within = learning_conflicts().assign(q=0.3)
     titles = [axes.get_title() for axes in values_figure(within).axes]
     assert titles == ["S1 against S2", "S2 against S1", "S2 within itself"]
@@ -22,8 +22,7 @@ def test_choices_and_q_are_drawn_with_a_panel_for_each_bandit() -> None:
 def test_three_actions_are_all_drawn() -> None:
     rows = learning_conflicts()
     rows.loc[2, "action"] = "wait"
-    figure = choices_figure(rows)
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["fight", "flight", "wait"]
+    assert legend_texts(choices_figure(rows)) == ["fight", "flight", "wait"]
 
 
 def test_an_action_has_the_same_colour_in_all_panels() -> None:
@@ -31,9 +30,8 @@ def test_an_action_has_the_same_colour_in_all_panels() -> None:
     rows.loc[rows["robot"] == 2, ["swarm", "action"]] = [1, "wait"]
     figure = values_figure(rows.assign(q=0.3))
     colours = [{line.get_label(): line.get_color() for line in axes.lines} for axes in figure.axes]
-    names = {text.get_text() for text in figure.legends[0].get_texts()}
-    assert names == {"fight", "flight", "wait"}
-    for name in names:
+    assert sorted(legend_texts(figure)) == ["fight", "flight", "wait"]
+    for name in legend_texts(figure):
         assert len({panel[name] for panel in colours if name in panel}) == 1
 
 

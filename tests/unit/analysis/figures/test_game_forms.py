@@ -26,10 +26,6 @@ def text_boxes(figure: Figure) -> dict[Text, Bbox]:
     return {text: text.get_window_extent(canvas.get_renderer()) for text in texts}
 
 
-def drawn_texts(figure: Figure) -> list[str]:
-    return [text.get_text() for text in text_boxes(figure)]
-
-
 def count_lines(figure: Figure, style: str) -> int:
     return sum(line.get_linestyle() == style for line in figure.axes[0].lines)
 
@@ -41,7 +37,7 @@ def graph(swarms: int) -> object:
 
 def test_the_tree_shows_moves_chances_payoffs_and_information_sets() -> None:
     figure = draw_extensive_form(extensive_form({1: WITHIN, 2: BETWEEN}, {1: 0.25, 2: 0.75}))
-    texts = drawn_texts(figure)
+    texts = [text.get_text() for text in text_boxes(figure)]
     assert {"S1, p = 0.25", "S2, p = 0.75", "payoffs (own, met)"} <= set(texts)
     assert texts.count("flight") == texts.count("fight") == 2 + 4
     payoffs = [text for text in texts if text.startswith("(")]
@@ -54,31 +50,19 @@ def test_the_graph_distinguishes_zero_sum_and_general_sum_games() -> None:
     figure = draw_polymatrix(graph(3))
     assert count_lines(figure, "-") == 3
     assert count_lines(figure, "--") == 3
-    texts = drawn_texts(figure)
+    texts = [text.get_text() for text in text_boxes(figure)]
     assert {"S1", "S2", "S3", "zero-sum", "general-sum", "within S2", "S1 (rows), S3 (columns)"} <= set(texts)
-    matrix = [
-        "           flight          fight",
-        "flight   (0, 0)  (12.3, -12.3)",
-        " fight  (-12.3, 12.3)  (0, 0)",
-    ]
-    written = [text.split() for text in texts if "12.3" in text]
-    assert written == [" ".join(matrix).split()] * 3
-
-
-def tree(swarms: int) -> object:
-    return extensive_form(dict.fromkeys(range(1, swarms + 1), BETWEEN))
+    matrix = "flight fight flight (0, 0) (12.3, -12.3) fight (-12.3, 12.3) (0, 0)"
+    assert [text.split() for text in texts if "12.3" in text] == [matrix.split()] * 3
 
 
 @pytest.mark.parametrize("swarms", [1, 2, 4, 6])
 def test_texts_are_inside_the_figure_and_do_not_overlap(swarms: int) -> None:
-    for figure in (draw_extensive_form(tree(swarms)), draw_polymatrix(graph(swarms))):
-        _check(figure)
-
-
-def _check(figure: Figure) -> None:
-    texts = text_boxes(figure)
-    assert len(texts) > 2
-    for text, box in texts.items():
-        assert Bbox.intersection(box, figure.bbox).bounds == pytest.approx(box.bounds), text.get_text()
-    for (one, box), (other, next_box) in combinations(texts.items(), 2):
-        assert not box.overlaps(next_box), (one.get_text(), other.get_text())
+    tree = extensive_form(dict.fromkeys(range(1, swarms + 1), BETWEEN))
+    for figure in (draw_extensive_form(tree), draw_polymatrix(graph(swarms))):
+        texts = text_boxes(figure)
+        assert len(texts) > 2
+        for text, box in texts.items():
+            assert Bbox.intersection(box, figure.bbox).bounds == pytest.approx(box.bounds), text.get_text()
+        for (one, box), (other, next_box) in combinations(texts.items(), 2):
+            assert not box.overlaps(next_box), (one.get_text(), other.get_text())

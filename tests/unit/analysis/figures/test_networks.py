@@ -5,22 +5,20 @@ from matplotlib.collections import LineCollection
 from kswarms.analysis.figures.files import encode
 from kswarms.analysis.figures.networks import jams_figure, network_figure
 from kswarms.analysis.measures.networks import jams, meeting_network
+from tests.helpers.legends import legend_texts
 from tests.helpers.result_rows import MET
 
 
 def test_the_network_is_drawn_with_a_line_for_each_pair_and_its_time_in_the_matrix() -> None:
     figure = network_figure(meeting_network(MET), "title")
     circle, matrix, colours = figure.axes
-    lines = sum(
-        len(drawn.get_segments()) for drawn in circle.collections if isinstance(drawn, LineCollection)
-    )
-    assert lines == 3
+    lines = [drawn.get_segments() for drawn in circle.collections if isinstance(drawn, LineCollection)]
+    assert sum(map(len, lines)) == 3
     (image,) = matrix.images
     assert image.get_array()[0].tolist() == [None, 1.0, 5.0, None]  # robot 0 met 1 and 2
     assert [label.get_text() for label in matrix.get_xticklabels()] == ["S1", "S2"]
     assert "(s)" in colours.get_ylabel()
-    legend = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert legend == ["intra-swarm meetings", "inter-swarm meetings", "S1", "S2"]
+    assert legend_texts(figure) == ["intra-swarm meetings", "inter-swarm meetings", "S1", "S2"]
     assert encode(figure, "png")
 
 
@@ -29,9 +27,6 @@ def test_a_network_of_one_pair_can_be_drawn() -> None:
 
 
 def test_jams_are_drawn_over_time() -> None:
-    (axes,) = jams_figure(jams(MET)).axes
-    assert axes.get_xlabel() == "time (s)"
-    assert [text.get_text() for text in axes.figure.legends[0].get_texts()] == [
-        "in jams of 3 or more",
-        "in the largest cluster",
-    ]
+    figure = jams_figure(jams(MET))
+    assert figure.axes[0].get_xlabel() == "time (s)"
+    assert legend_texts(figure) == ["in jams of 3 or more", "in the largest cluster"]

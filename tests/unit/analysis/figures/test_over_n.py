@@ -15,18 +15,10 @@ from matplotlib.lines import Line2D
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.colours import SWARM_COLOURS
 from kswarms.analysis.figures.files import encode
-from kswarms.analysis.figures.over_n import (
-    TIME_SHARES,
-    figure_of,
-    pucks_over_n,
-    quantities,
-    sud_over_n,
-    time_shares,
-    write_figures,
-)
+from kswarms.analysis.figures.over_n import figure_of, pucks_over_n, sud_over_n, time_shares, write_figures
+from kswarms.analysis.measures.quantities import TIME_SHARES, quantities
+from tests.helpers.legends import legend_texts
 from tests.helpers.result_rows import DENSITIES, runs_of
-
-PNG = b"\x89PNG\r\n\x1a\n"
 
 
 def curves(axes: Axes) -> dict[str, Line2D]:
@@ -41,14 +33,12 @@ def heights(line: Line2D) -> list[float]:
 
 def points(axes: Axes) -> list[np.ndarray]:
     """Return the single seeds (n, value) of each curve."""
-    return [
-        np.asarray(drawn.get_offsets()) for drawn in axes.collections if isinstance(drawn, PathCollection)
-    ]
+    drawn = [each for each in axes.collections if isinstance(each, PathCollection)]
+    return [np.asarray(each.get_offsets()) for each in drawn]
 
 
-def legend(figure: Figure) -> list[str]:
-    (drawn,) = figure.legends
-    return [text.get_text() for text in drawn.get_texts()]
+def legend_title(figure: Figure) -> str:
+    return figure.legends[0].get_title().get_text()
 
 
 def test_swarms_have_the_line_styles_of_the_source() -> None:
@@ -75,11 +65,10 @@ def test_a_curve_is_the_mean_over_the_seeds_of_its_scenario() -> None:
 def test_each_seed_is_a_point_near_its_density() -> None:
     (axes,) = pucks_over_n(runs_of("fig-x"), "fig-x").axes
     of_s1, of_s2 = points(axes)
-    assert sorted(of_s1[:, 1]) == sorted([15, 17] * 2 + [25, 27] * 2 + [35, 37] * 2)
-    assert len(of_s2) == 4 * len(DENSITIES)
+    assert sorted(of_s1[:, 1]) == [15, 15, 17, 17, 25, 25, 27, 27, 35, 35, 37, 37]
     assert set(of_s1[:, 0]).isdisjoint(of_s2[:, 0])
-    assert np.abs(of_s1[:, 0] - np.repeat(DENSITIES, 4)).max() <= 1
-    assert np.abs(of_s2[:, 0] - np.repeat(DENSITIES, 4)).max() <= 1
+    for seeds in (of_s1, of_s2):
+        assert np.abs(seeds[:, 0] - np.repeat(DENSITIES, 4)).max() <= 1
 
 
 def test_a_band_is_an_interval_of_the_mean_and_ignores_the_order_of_rows() -> None:
@@ -97,42 +86,35 @@ def test_a_band_is_an_interval_of_the_mean_and_ignores_the_order_of_rows() -> No
 
 
 def test_each_condition_of_one_swarm_has_a_curve() -> None:
-    runs = runs_of("fig-6.15", swarms=(1,), conditions=("flight 50 ms", "fight"))
-    figure = pucks_over_n(runs, "fig-6.15")
+    figure = pucks_over_n(runs_of("fig-x", swarms=(1,), conditions=("flight 50 ms", "fight")), "fig-x")
     (axes,) = figure.axes
-    assert legend(figure) == ["flight 50 ms", "fight"]
+    assert legend_texts(figure) == ["flight 50 ms", "fight"]
     assert heights(curves(axes)["fight"]) == [116, 126, 136]
     assert len({line.get_color() for line in curves(axes).values()}) == 2
 
 
 def test_conditions_of_several_swarms_keep_the_swarms_markers() -> None:
     figure = pucks_over_n(runs_of("fig-x", conditions=("", "delta=0.1")), "fig-x")
+    *_, first, second = names = legend_texts(figure)
+    assert names == ["–, S1: avoid", "–, S2: attack", "delta=0.1, S1: avoid", "delta=0.1, S2: attack"]
     (axes,) = figure.axes
-    assert legend(figure) == [
-        "–, S1: avoid",
-        "–, S2: attack",
-        "delta=0.1, S1: avoid",
-        "delta=0.1, S2: attack",
-    ]
-    open_marker, filled = curves(axes)["delta=0.1, S1: avoid"], curves(axes)["delta=0.1, S2: attack"]
+    open_marker, filled = curves(axes)[first], curves(axes)[second]
     assert open_marker.get_markerfacecolor() == "white"
     assert filled.get_markerfacecolor() == filled.get_color() == open_marker.get_color()
 
 
 def test_the_legend_omits_the_arguments_of_a_policy() -> None:
-    runs = runs_of("fig-x").replace(
-        {"policy": {"attack": """avoid+inter-learner(reward="wlu(delta=0.1, b=1.5)", rule='ucb')"""}}
-    )
-    assert legend(pucks_over_n(runs, "fig-x")) == ["S1: avoid", "S2: avoid+inter-learner"]
-    own = runs_of("fig-x").replace({"policy": {"attack": "far/away/my_file.py:Cautious(note='a:b')"}})
-    assert legend(pucks_over_n(own, "fig-x")) == ["S1: avoid", "S2: Cautious"]
+    for policy, name in (
+        ("""avoid+inter-learner(reward="wlu(delta=0.1, b=1.5)", rule='ucb')""", "avoid+inter-learner"),
+        ("far/away/my_file.py:Cautious(note='a:b')", "Cautious"),
+    ):
+        runs = runs_of("fig-x").replace({"policy": {"attack": policy}})
+        assert legend_texts(pucks_over_n(runs, "fig-x")) == ["S1: avoid", f"S2: {name}"]
 
 
 def test_labels_title_and_seeds() -> None:
     runs = runs_of("fig-x")
-    figure = pucks_over_n(
-        runs, "fig-x", "a title of words that is far too long for one line of the figure " * 2
-    )
+    figure = pucks_over_n(runs, "fig-x", "a title that is far too long for one line of the figure " * 2)
     (axes,) = figure.axes
     assert axes.get_xlabel() == "number of robots in all, N"
     assert axes.get_ylabel() == "pucks deposited by the swarm"
@@ -140,10 +122,10 @@ def test_labels_title_and_seeds() -> None:
     assert max(map(len, figure.get_suptitle().splitlines())) <= 75
     hyphens = pucks_over_n(runs, "fig-x", "an inter-learner " * 8).get_suptitle()
     assert not any(line.endswith("inter-") for line in hyphens.splitlines())
-    assert figure.legends[0].get_title().get_text().startswith("mean of 4 seeds")
+    assert legend_title(figure).startswith("mean of 4 seeds")
     assert list(axes.get_xticks()) == [6, 16, 26]
     fewer = runs[(runs["n"] != 6) | (runs["seed"] == 0)]
-    assert pucks_over_n(fewer, "fig-x").legends[0].get_title().get_text().startswith("mean of 1 to 4 seeds")
+    assert legend_title(pucks_over_n(fewer, "fig-x")).startswith("mean of 1 to 4 seeds")
     assert pucks_over_n(runs, "fig-x").get_suptitle() == "fig-x"
 
 
@@ -155,13 +137,13 @@ def test_a_single_density_has_bars_as_intervals() -> None:
 
 
 def test_one_seed_at_one_density_without_pucks() -> None:
-    runs = runs_of("fig-x", densities=[20], seeds=1).assign(pucks=0)
-    figure = pucks_over_n(runs, "fig-x")
+    figure = pucks_over_n(runs_of("fig-x", densities=[20], seeds=1).assign(pucks=0), "fig-x")
     (axes,) = figure.axes
-    assert figure.legends[0].get_title().get_text() == "one seed"
+    assert legend_title(figure) == "one seed"
     assert points(axes) == []
-    assert axes.get_xlim()[0] < 20 < axes.get_xlim()[1]
-    assert axes.get_ylim()[0] < 0 < axes.get_ylim()[1]
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    assert left < 20 < right
+    assert low < 0 < high
 
 
 def test_many_densities_get_the_ticks_of_matplotlib() -> None:
@@ -171,24 +153,19 @@ def test_many_densities_get_the_ticks_of_matplotlib() -> None:
 
 def test_time_shares_have_a_panel_for_each_kind_of_conflict() -> None:
     figure = time_shares(runs_of("fig-6.3"), "fig-6.3")
-    shown = {
-        axes.get_title(): {label: heights(line) for label, line in curves(axes).items()}
-        for axes in figure.axes
-    }
-    expected = {"total": (0.075, 0.15), "inter-swarm": (0.05, 0.1), "intra-swarm": (0.025, 0.05)}
-    assert list(shown) == list(expected)
-    for kind, (first, second) in expected.items():
-        assert shown[kind]["S1: avoid"] == pytest.approx([first] * 3)
-        assert shown[kind]["S2: attack"] == pytest.approx([second] * 3)
+    assert [axes.get_title() for axes in figure.axes] == ["total", "inter-swarm", "intra-swarm"]
+    for axes, first, second in zip(figure.axes, (0.075, 0.05, 0.025), (0.15, 0.1, 0.05), strict=True):
+        assert heights(curves(axes)["S1: avoid"]) == pytest.approx([first] * 3)
+        assert heights(curves(axes)["S2: attack"]) == pytest.approx([second] * 3)
     assert figure.axes[0].get_ylabel() == "share of time, T(a) / (T(a) + T(p))"
-    assert legend(figure) == ["S1: avoid", "S2: attack"]
+    assert legend_texts(figure) == ["S1: avoid", "S2: attack"]
 
 
 def test_sud_of_the_second_swarm_by_condition() -> None:
     runs = runs_of("fig-7.10", swarms=(1, 2, 3), conditions=("avoid", "delta=0.1"))
     figure = sud_over_n(runs, "fig-7.10")
     (axes,) = figure.axes
-    assert legend(figure) == ["avoid", "delta=0.1"]
+    assert legend_texts(figure) == ["avoid", "delta=0.1"]
     assert heights(curves(axes)["avoid"]) == [-14, -4, 6]
     assert axes.get_ylabel() == "SUD of S2 (pucks)"
     (of_s3,) = sud_over_n(runs, "fig-7.10", swarm=3).axes
@@ -213,30 +190,27 @@ def test_write_figures_writes_each_scenario_with_runs_and_changes_no_settings(tm
     paths = write_figures(tmp_path, tmp_path / "figures", ["fig-7.10", "fig-6.3", "fig-7.1", "fig-6.1a"])
     assert paths == [tmp_path / "figures" / f"{name}.png" for name in ("fig-7.10", "fig-6.3", "fig-6.1a")]
     assert set(paths) == set((tmp_path / "figures").iterdir())
-    assert all(path.read_bytes().startswith(PNG) for path in paths)
+    assert all(path.read_bytes().startswith(b"\x89PNG") for path in paths)
     assert dict(mpl.rcParams) == settings
     assert plt.get_fignums() == []
 
 
-SHOWING_SUD = ("6.10a", "6.10b", "6.12", "6.14", "7.4", "7.6", "7.8", "7.10", "7.11", "7.19")
-
-
 @pytest.mark.parametrize(
-    ("scenario", "label"),
+    ("scenarios", "shown", "label"),
     [
-        ("fig-6.2", "pucks deposited by the swarm"),
-        ("fig-6.4a", "pucks deposited by the swarm"),
-        ("fig-6.15", "pucks deposited by the swarm"),
-        ("fig-6.3", "share of time"),
-        *((f"fig-{number}", "SUD of S2 (pucks)") for number in SHOWING_SUD),
+        ("6.2 6.4a 6.15", ("pucks",), "pucks deposited by the swarm"),
+        ("6.3", TIME_SHARES, "share of time"),
+        ("6.10a 6.10b 6.12 6.14 7.4 7.6 7.8 7.10 7.11 7.19", ("sud",), "SUD of S2 (pucks)"),
     ],
 )
-def test_the_figure_of_a_scenario_shows_the_quantity_of_the_source(scenario: str, label: str) -> None:
-    figure = figure_of(runs_of(scenario), scenario, "its title")
-    assert figure.axes[0].get_ylabel().startswith(label)
-    assert figure.get_suptitle() == f"{scenario}: its title"
-    expected = {"pucks": ("pucks",), "SUD": ("sud",), "share": TIME_SHARES}[label.split()[0]]
-    assert quantities(scenario) == expected
+def test_the_figure_of_a_scenario_shows_the_quantity_of_the_source(
+    scenarios: str, shown: tuple[str, ...], label: str
+) -> None:
+    for scenario in (f"fig-{number}" for number in scenarios.split()):
+        figure = figure_of(runs_of(scenario), scenario, "its title")
+        assert figure.axes[0].get_ylabel().startswith(label)
+        assert figure.get_suptitle() == f"{scenario}: its title"
+        assert quantities(scenario) == shown
 
 
 def test_without_detail_a_figure_shows_only_means() -> None:
@@ -245,13 +219,7 @@ def test_without_detail_a_figure_shows_only_means() -> None:
     assert list(axes.collections) == []
     assert heights(curves(axes)["S1: avoid"]) == [16, 26, 36]
     assert curves(axes)["S1: avoid"].get_color() == SWARM_COLOURS[0]
-    assert figure.legends[0].get_title().get_text() == "mean of 4 seeds"
-
-
-def test_the_same_runs_give_the_same_bytes() -> None:
-    figures = [pucks_over_n(runs_of("fig-x", seeds=seeds), "fig-x") for seeds in (8, 8, 9)]
-    first, again, other = (encode(figure, "png") for figure in figures)
-    assert first == again != other
+    assert legend_title(figure) == "mean of 4 seeds"
 
 
 @pytest.mark.parametrize("length", [10, 40, 120])

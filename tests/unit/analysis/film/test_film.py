@@ -19,22 +19,10 @@ PAINTER = ArenaPainter(build_arena("symmetric", 2, 2.0, 0.16, 0.17, 0), 0.085, 4
 
 
 def _image(
-    x: float = 0.3,
-    y: float = 0.0,
-    heading: float = 0.0,
-    swarm: int = 0,
-    acts: bool = False,
-    puck: bool = False,
+    x: float = 0.3, y: float = 0, heading: float = 0, swarm: int = 0, acts: bool = False, puck: bool = False
 ) -> Image.Image:
-    return PAINTER.paint(
-        "t = 0.0 s",
-        (1, 2),
-        np.array([[x, y]]),
-        np.array([heading]),
-        np.array([swarm]),
-        np.array([acts]),
-        np.array([puck]),
-    )
+    states = [np.array([value]) for value in ((x, y), heading, swarm, acts, puck)]
+    return PAINTER.paint("t = 0.0 s", (1, 2), *states)
 
 
 def _at(image: Image.Image, x: float, y: float) -> tuple[int, ...]:
@@ -114,10 +102,8 @@ def test_a_sheet_has_its_images_side_by_side(tmp_path: Path, count: int, grid: t
     write_sheet(path, [_image()] * count)
     gap = round(0.02 * PAINTER.width)
     with Image.open(path) as sheet:
-        assert sheet.size == (
-            grid[0] * (PAINTER.width + gap) - gap,
-            grid[1] * (PAINTER.height + gap) - gap,
-        )
+        assert sheet.width == grid[0] * (PAINTER.width + gap) - gap
+        assert sheet.height == grid[1] * (PAINTER.height + gap) - gap
 
 
 def test_a_film_that_cannot_be_written_is_an_error_and_leaves_no_file(

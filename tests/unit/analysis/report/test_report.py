@@ -1,6 +1,7 @@
 """Parts of a report: coverage, page, findings, recorded games, provenance."""
 
 import json
+from functools import partial
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -39,12 +40,12 @@ def test_coverage_counts_planned_games_and_describes_missing_ones() -> None:
 
 def test_coverage_describes_irregular_gaps() -> None:
     runs = runs_of("fig-y", conditions=("a", "b"), densities=(6, 16, 26))
-    some = runs[(runs["condition"] == "a") | (runs["n"] == 6) | (runs["seed"] < 2)]
-    (row,) = coverage(some, {"fig-y": PLAN["fig-y"]}).to_dict("records")
-    assert row["missing"] == "seeds (2 to 4 of 4)"
-    corner = runs[(runs["condition"] == "a") | (runs["n"] > 6)]
-    (row,) = coverage(corner, {"fig-y": PLAN["fig-y"]}).to_dict("records")
-    assert row["missing"] == "some conditions at some N"
+    first = runs["condition"] == "a"
+    for some, missing in (
+        (runs[first | (runs["n"] == 6) | (runs["seed"] < 2)], "seeds (2 to 4 of 4)"),
+        (runs[first | (runs["n"] > 6)], "some conditions at some N"),
+    ):
+        assert coverage(some, {"fig-y": PLAN["fig-y"]})["missing"].tolist() == [missing]
 
 
 def test_the_table_of_missing_games_has_incomplete_scenarios_and_a_caption() -> None:
@@ -52,8 +53,7 @@ def test_the_table_of_missing_games_has_incomplete_scenarios_and_a_caption() -> 
     assert table.rows == [["fig-y", "12", "24", "conditions b"]]
     assert table.caption == "1 of 3 scenarios are complete, 1 in part; not played: fig-z."
     whole = coverage_table(coverage(runs_of("fig-x"), {"fig-x": PLAN["fig-x"]}))
-    assert whole.rows == []
-    assert whole.caption == "1 of 1 scenarios are complete, 0 in part."
+    assert (whole.rows, whole.caption) == ([], "1 of 1 scenarios are complete, 0 in part.")
 
 
 def a_report() -> Report:
@@ -63,11 +63,8 @@ def a_report() -> Report:
     part.add_figure("curve", drawing, 'alt "quoted"', "caption")
     table = TextTable(["N", "x"], [["6", "1.0"]], "below")
     part.add_table("numbers", "Numbers", table, pd.DataFrame({"N": [6], "x": [1.25]}))
-    return Report(
-        "A title",
-        ["summary"],
-        [Chapter("first", "First", [part]), Chapter("second", "Second", [Part("second", "Second")])],
-    )
+    chapters = [Chapter("first", "First", [part]), Chapter("second", "Second", [Part("second", "Second")])]
+    return Report("A title", ["summary"], chapters)
 
 
 def test_a_page_is_self_contained_and_its_links_are_valid() -> None:
@@ -102,14 +99,13 @@ def test_page_and_files_are_written_or_an_error_is_raised(tmp_path: Path) -> Non
 
 
 def test_verdicts_are_counted_and_marked() -> None:
-    part = verdicts_part(
-        [
-            Verdict("a", "A holds.", "holds", 1.234, 0.5, 2.0, "pucks", 20, ""),
-            Verdict("b", "B fails.", "fails", -1.0, None, -0.25, "pucks", 20, "at N = 6"),
-            Verdict("c", "C is unknown.", "undecided", 1.0, None, None, "pucks", 3, "too few"),
-            Verdict("d", "D was not played.", "no data", note="no runs"),
-        ]
-    )
+    verdicts = [
+        Verdict("a", "A holds.", "holds", 1.234, 0.5, 2.0, "pucks", 20, ""),
+        Verdict("b", "B fails.", "fails", -1.0, None, -0.25, "pucks", 20, "at N = 6"),
+        Verdict("c", "C is unknown.", "undecided", 1.0, None, None, "pucks", 3, "too few"),
+        Verdict("d", "D was not played.", "no data", note="no runs"),
+    ]
+    part = verdicts_part(verdicts)
     assert part.text[0] == "4 findings: 1 holds, 1 fails, 1 undecided, 1 no data."
     (table,) = part.tables
     assert [row[3] for row in table.table.rows] == ["1.23 (0.5 … 2)", "-1 (… … -0.25)", "1", "–"]
@@ -140,29 +136,25 @@ def test_a_shared_game_belongs_to_the_first_condition(tmp_path: Path) -> None:
     assert recorded_conditions(tmp_path, "robots", runs) == []
 
 
-def test_random_stations_are_not_drawn_into_the_common_map(tmp_path: Path) -> None:
+def test_random_stations_are_not_drawn_into_the_common_map(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     runs = runs_of("fig-x", densities=[16], seeds=2)
     games = [MET.assign(run=run) for run in runs["run"].unique()]
     pd.concat(games).to_parquet(tmp_path / "conflicts.parquet")
     (condition,) = recorded_conditions(tmp_path, "conflicts", runs)
+    shown: list[bool] = []
 
-    def drawn(layout: str, monkeypatch: pytest.MonkeyPatch) -> list[bool]:
-        shown: list[bool] = []
+    def heat_map_figure(conflicts: pd.DataFrame, title: str, places: Arena | None) -> Figure:
+        shown.append(places is not None)
+        return Figure()
 
-        def heat_map_figure(conflicts: pd.DataFrame, title: str, places: Arena | None) -> Figure:
-            shown.append(places is not None)
-            return Figure()
-
-        monkeypatch.setattr("kswarms.analysis.figures.heat_maps.heat_map_figure", heat_map_figure)
-        chapters = conflict_parts(
-            tmp_path, condition, lambda *key: build_arena(layout, 2, 2.0, 0.16, 0.17, key[-1])
-        )
+    monkeypatch.setattr("kswarms.analysis.figures.heat_maps.heat_map_figure", heat_map_figure)
+    for layout in ("symmetric", "random-stations"):
+        arena = partial(build_arena, layout, 2, 2.0, 0.16, 0.17)
+        chapters = conflict_parts(tmp_path, condition, lambda *key, arena=arena: arena(key[-1]))
         assert [chapter for chapter, _ in chapters] == ["networks", "maps"]
-        return shown
-
-    with pytest.MonkeyPatch.context() as patch:
-        assert drawn("symmetric", patch) == [True]
-        assert drawn("random-stations", patch) == [False]
+    assert shown == [True, False]
 
 
 def test_provenance_without_a_manifest(tmp_path: Path) -> None:
