@@ -32,9 +32,9 @@ def network_figure(network: nx.Graph, title: str = "") -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Left: edges are the wider and darker, the longer two robots were in conflict; edges within a swarm
-        are grey, edges between swarms black. Right: the same times (s) with robots in the same order, on a
-        logarithmic scale; pairs that never met are grey.
+        Left: width and darkness of an edge grow with the time that two robots were in conflict; edges within
+        a swarm are grey, edges between swarms black. Right: a matrix of the same times (s) on a logarithmic
+        scale; robots are sorted by swarm, and pairs that never met are grey.
     """
     swarm = nx.get_node_attributes(network, "swarm")
     order = sorted(network, key=lambda robot: (swarm[robot], robot))

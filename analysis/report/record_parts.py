@@ -47,7 +47,7 @@ _NETWORK_CAPTION: Final = (
 
 @dataclass(frozen=True)
 class RecordedCondition:
-    """A condition with recorded games: `n`, `seed` and `run` of each, as in `runs.parquet`."""
+    """A condition and its recorded games: one row of `runs.parquet` for each."""
 
     scenario: str
     condition: str

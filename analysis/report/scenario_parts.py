@@ -75,7 +75,8 @@ def table_part(policies: pd.DataFrame, table: str, title: str, scenarios: Sequen
     part = Part(table, f"{table}: {title}")
     absent = [name for name in scenarios if name not in set(cells["scenario"])]
     if absent:
-        part.text.append(f"Missing: {', '.join(absent)}; the numbers are of {cells['scenario'].iloc[0]}.")
+        present = ", ".join(dict.fromkeys(cells["scenario"]))
+        part.text.append(f"Missing: {', '.join(absent)}; the numbers are of {present}.")
     part.add_table(table, title, learned_table(cells), cells)
     return part
 
