@@ -45,22 +45,9 @@ def scene() -> Scene:
         record: str = "",
         **rest: Any,
     ) -> GameModel:
-        """Build a game from the poses (m, m, rad) of each swarm.
+        """Build a game from the poses (m, m, rad) of each swarm; `changes` are changes of the preset.
 
-        Parameters
-        ----------
-        *swarms
-            The poses of each swarm's robots.
-        policies : str
-            Of each swarm, separated by commas; avoid if empty.
-        preset, changes
-            Preset of the parameters, and what differs from it.
-        drives : tuple of float
-            Drive of all in state P and in state A.
-        seed, record
-            As in `GameModel`.
-        **rest
-            Fields of the game.
+        Policies are separated by commas, avoid by default. All robots have the same drives in states P and A.
         """
         names = policies.split(",") if policies else ["avoid"] * len(swarms)
         game = Game(

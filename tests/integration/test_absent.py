@@ -12,9 +12,17 @@ from hypothesis import strategies as st
 from kswarms.agents.body import KREMBOT
 from kswarms.agents.robot.state import RobotStates
 from kswarms.agents.streams import Purpose
-from kswarms.model.description.game import Game, Swarm
+from kswarms.model.description.game import Game
 from kswarms.model.description.parameters import PRESETS
 from kswarms.model.game_model import GameModel
+from tests.conftest import Scene
+from tests.integration.phased_games import (
+    check_times_and_pucks,
+    conflicts_of,
+    make_game,
+    play,
+    play_learning_phase,
+)
 
 FITTED = PRESETS["fitted"]
 NEAR = 2 * KREMBOT.radius + KREMBOT.sensing_scale * max(FITTED.flight_range, FITTED.active_range)
@@ -24,47 +32,19 @@ RESERVE = 0.05
 WAYS = ("learning", "game")
 
 
-def game(*policies: str, size: int = 6, learning: float = 30.0, **rest: Any) -> Game:
-    swarms = tuple(Swarm(policy=policy, size=size) for policy in policies or ("attack", "inter-learner"))
-    return Game(swarms=swarms, learning=learning, **{"duration": 30.0, **rest})
-
-
-def play(what: Game, seed: int = 0, record: str = "conflicts,robots,trajectory") -> GameModel:
-    model = GameModel(what, seed, record)
-    model.play()
-    return model
-
-
-def at_the_switch(what: Game, seed: int = 0, record: str = "conflicts") -> GameModel:
-    model = GameModel(what.replace(sample_period=what.learning), seed, record)
-    model.step()
-    assert model.phase == "game"
-    return model
+def game(*policies: str, **fields: Any) -> Game:
+    policies = policies or ("attack", "inter-learner")
+    return make_game(*policies, **{"learning": 30.0, "duration": 30.0, **fields})
 
 
 def world(model: GameModel, absent: tuple[int, ...] = ()) -> list[Any]:
     """Return body, state and policy of all but some robots, and the supplies."""
     robots = [robot for robot in model.robots if robot.number not in absent]
-    return [
-        [
-            (robot.number, *robot.position, robot.heading, robot.state, robot.carrying, repr(robot.policy))
-            for robot in robots
-        ],
-        model.supply,
-    ]
+    bodies = [(r.number, *r.position, r.heading, r.state, r.carrying, repr(r.policy)) for r in robots]
+    return [bodies, model.supply]
 
 
-def rows_of(model: GameModel, phase: str) -> list[dict[str, Any]]:
-    table = model.tables()["conflicts"]
-    rows = [dict(zip(table, values, strict=True)) for values in zip(*table.values(), strict=True)]
-    return [row for row in rows if row["phase"] == phase]
-
-
-def everything(model: GameModel) -> str:
-    return json.dumps([model.results(), model.tables()])
-
-
-# Absent from the very beginning.
+# Absent from the start.
 
 
 def test_the_other_robots_keep_number_place_heading_policy_and_streams() -> None:
@@ -105,8 +85,8 @@ def test_robots_that_met_the_absent_one_move_differently_without_it(seed: int) -
     assert world(rest) != world(whole, (4,))
 
 
-def test_the_empty_game_of_one_robot_is_without_conflicts() -> None:
-    """All but one of both swarms are absent: a swarm may be left empty."""
+def test_a_lone_robot_has_no_conflicts() -> None:
+    # All robots but one are absent; one swarm is empty.
     model = play(game("avoid", "attack", size=2, absent=(0, 1, 3)))
     rows = model.results()
     assert [row["size"] for row in rows] == [0, 1]
@@ -115,27 +95,27 @@ def test_the_empty_game_of_one_robot_is_without_conflicts() -> None:
     assert rows[1]["sud"] == rows[1]["pucks"] == -rows[0]["sud"]
 
 
-# Absent from the measured game alone.
+# Absent from the measured game only.
 
 
 @pytest.mark.parametrize("absent", [(0,), (3, 11), (6, 7, 8, 9, 10, 11)])
 def test_removal_at_the_switch_does_not_change_the_learning_phase(absent: tuple[int, ...]) -> None:
-    whole = at_the_switch(game(supply=9), record="conflicts")
-    rest = at_the_switch(game(supply=9, absent=absent, absent_from="game"))
-    assert json.dumps(rows_of(rest, "learning")) == json.dumps(rows_of(whole, "learning"))
+    whole = play_learning_phase(game(supply=9))
+    rest = play_learning_phase(game(supply=9, absent=absent, absent_from="game"))
+    assert json.dumps(conflicts_of(rest, "learning")) == json.dumps(conflicts_of(whole, "learning"))
     assert world(rest) == world(whole, absent)
     assert min(rest.supply) < 9
     assert rest.carried_at_start == sum(robot.carrying for robot in rest.robots)
     for model in (whole, rest):
         model.play()
-    assert json.dumps(rows_of(rest, "learning")) == json.dumps(rows_of(whole, "learning"))
+    assert json.dumps(conflicts_of(rest, "learning")) == json.dumps(conflicts_of(whole, "learning"))
     assert world(rest) != world(whole, absent)
 
 
 def test_a_removed_robot_neither_acts_nor_is_met() -> None:
     absent = (2, 5, 6, 11)
     model = play(game("attack", "learner", absent=absent, absent_from="game"), seed=1)
-    learned, played = rows_of(model, "learning"), rows_of(model, "game")
+    learned, played = conflicts_of(model, "learning"), conflicts_of(model, "game")
     assert {row["robot"] for row in learned} == {row["opponent"] for row in learned} == set(range(12))
     there = set(range(12)) - set(absent)
     assert {row["robot"] for row in played} == {row["opponent"] for row in played} == there
@@ -150,7 +130,7 @@ def test_a_removed_robot_neither_acts_nor_is_met() -> None:
 
 
 def test_mesa_lists_the_robots_in_the_game() -> None:
-    model = at_the_switch(game(absent=(1, 8), absent_from="game"))
+    model = play_learning_phase(game(absent=(1, 8), absent_from="game"))
     assert list(model.agents) == model.robots == list(model.space.agents)
     model.env.run(until=350)
     for row, robot in enumerate(model.robots):
@@ -162,21 +142,17 @@ def test_mesa_lists_the_robots_in_the_game() -> None:
         assert {*near} == {other for other, d in distances.items() if d <= 0.5 and other is not robot}
 
 
-def test_a_blocked_robot_drives_on_after_the_removal() -> None:
-    """Two aggressive robots of two swarms, head to head, until one of them leaves."""
+def test_a_blocked_robot_drives_on_after_the_removal(scene: Scene) -> None:
+    # Two aggressive robots drive head to head until one of them leaves.
+    poses = [(-0.2, 0.3, 0.0)], [(0.2, 0.3, math.pi)]
     reached = {}
     for absent in ((), (1,)):
-        what = game("aggressive", "aggressive", size=1, learning=5.0, absent=absent, absent_from="game")
-        model = GameModel(what, record="conflicts")
-        for robot, (x, heading) in zip(model.robots, ((-0.2, 0.0), (0.2, math.pi)), strict=True):
-            robot.position = np.array([x, 0.3])
-            row = model.states.robots[robot.index : robot.index + 1]
-            row["heading"], row["forward_x"], row["forward_y"] = heading, math.cos(heading), 0.0
+        fields = {"learning": 5.0, "absent": absent, "absent_from": "game", "record": "conflicts"}
+        model = scene(*poses, policies="aggressive,aggressive", **fields)
         model.env.run(until=50)
         before = model.robots[0].position[0]
         assert before < 0.0
-        begun = len(rows_of(model, "learning"))
-        assert begun > 4
+        assert len(conflicts_of(model, "learning")) > 4
         model.env.run(until=60)
         reached[absent] = model.robots[0].position[0] - before
     assert abs(reached[()]) < 1e-3
@@ -184,43 +160,35 @@ def test_a_blocked_robot_drives_on_after_the_removal() -> None:
 
 
 def test_the_puck_of_an_absent_robot_is_not_counted() -> None:
-    took_one = False
+    carries_puck = False
     for seed in range(4):
         absent = (0, 1, 2, 6)
-        whole = at_the_switch(game(learning=60.0), seed)
-        took_one |= any(robot.carrying for robot in whole.robots if robot.number in absent)
+        whole = play_learning_phase(game(learning=60.0), seed)
+        carries_puck |= any(robot.carrying for robot in whole.robots if robot.number in absent)
         model = play(game(learning=60.0, absent=absent, absent_from="game", duration=120.0), seed)
-        carried = sum(robot.carrying for robot in model.robots)
-        assert model.picked_up + model.carried_at_start == sum(model.pucks) + carried
-        assert model.pucks == [sum(robot.pucks for robot in members) for members in model.members]
-    assert took_one
+        check_times_and_pucks(model)
+    assert carries_puck
 
 
 def test_times_of_the_present_robots_add_up() -> None:
     for since in WAYS:
         model = play(game("attack", "learner", absent=(0, 9, 10), absent_from=since, puck_limit=3))
-        measured = model.env.now - 300
         assert [row["size"] for row in model.results()] == [5, 4]
-        for robot in model.robots:
-            t_a, t_p = robot.times()
-            assert sum(t_a) + t_p == measured
-        for row in model.results():
-            assert row["t_a_intra"] + row["t_a_inter"] + row["t_p"] == pytest.approx(
-                row["size"] * row["duration"]
-            )
+        check_times_and_pucks(model)
 
 
-# Both ways to be absent.
+# Both values of `absent_from`.
 
 
 def test_without_learning_both_are_the_same() -> None:
-    never, left = (game("avoid", "attack", learning=0.0, absent=(3,), absent_from=way) for way in WAYS)
-    assert everything(play(never)) == everything(play(left))
+    models = [play(game("avoid", "attack", learning=0.0, absent=(3,), absent_from=way)) for way in WAYS]
+    never, left = (json.dumps([model.results(), model.tables()]) for model in models)
+    assert never == left
 
 
 @pytest.mark.parametrize("preempt", [False, True])
 def test_a_robot_without_conflicts_may_be_removed_early_or_late(preempt: bool) -> None:
-    """It is the same world, whether the robot was never there or leaves before it came near anybody."""
+    # The world is the same if the robot leaves before it came near any other.
     compared = 0
     for seed in range(12):
         parameters = FITTED.replace(preempt=preempt)
@@ -236,7 +204,7 @@ def test_a_robot_without_conflicts_may_be_removed_early_or_late(preempt: bool) -
             continue
         never, left = (play(what.replace(absent=(2,), absent_from=way), seed) for way in WAYS)
         assert world(never) == world(left)
-        assert json.dumps(rows_of(never, "game")) == json.dumps(rows_of(left, "game"))
+        assert json.dumps(conflicts_of(never, "game")) == json.dumps(conflicts_of(left, "game"))
         compared += 1
     assert compared >= 2
 

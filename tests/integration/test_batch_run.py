@@ -1,4 +1,4 @@
-"""Mesa's own batch runner sweeps a game unchanged, from a plain script, in one process and in two."""
+"""Sweeps with Mesa's batch runner, from a script, in one process and in two."""
 
 import json
 import os
@@ -41,7 +41,7 @@ Row = dict[str, Any]
 
 
 def run_script(folder: Path, processes: int, period: int) -> list[Row]:
-    """Run the script in a fresh interpreter, away from the packages' own directory."""
+    """Run the script in a new interpreter, outside the repository."""
     script = folder / "sweep.py"
     script.write_text(SCRIPT)
     done = subprocess.run(
@@ -72,7 +72,7 @@ def test_two_processes_give_the_rows_of_one(tmp_path: Path) -> None:
     assert len({row["RunId"] for row in one}) == 16
     steps = [(row["Step"], row["time"]) for row in one if row["RunId"] == 0]
     assert steps == [(0, 0.0), (1, 10.0), (2, 20.0), (3, 30.0), (4, 40.0), (5, 47.0)]
-    # Every sample of a run is there, the one at its end too, however it ended.
+    # All samples of each run are there, with the one at its end.
     ends = {row["RunId"]: row for row in one}
     for row in ends.values():
         model = played(row)
@@ -85,7 +85,7 @@ def test_two_processes_give_the_rows_of_one(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_the_last_row_is_the_state_at_the_end(tmp_path: Path) -> None:
-    rows = run_script(tmp_path, 1, -1)  # the last of each run only
+    rows = run_script(tmp_path, 1, -1)  # −1: the last sample of each run only
     assert [row["RunId"] for row in rows] == list(range(16))
     assert {row["time"] for row in rows if row["puck_limit"] == 0} == {47.0}
     for row in rows:
@@ -99,7 +99,7 @@ def test_the_last_row_is_the_state_at_the_end(tmp_path: Path) -> None:
             assert (row[f"share_a_{k}"], row[f"share_p_{k}"]) == pytest.approx((share, 1 - share))
 
 
-def test_agents_have_their_rows_too() -> None:
+def test_agents_have_rows() -> None:
     rows = mesa.batch_run(
         ForagingModel,
         {"n": 4, "duration": 20.0, "record": "agents", "policies": "avoid,avoid"},

@@ -2,6 +2,7 @@
 
 import math
 from collections import Counter, defaultdict
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 import pytest
@@ -15,13 +16,13 @@ from kswarms.model.description.parameters import PRESETS
 from kswarms.model.game_model import GameModel, Instant
 
 MOTION = 2
-"""SimPy priority of the motion's own waits."""
+"""SimPy priority of the motion process."""
 
 SEED = 3
 
 
-class Happened(NamedTuple):
-    """One event of the clock; for a timeout also its robot, kind and start."""
+class ClockEvent(NamedTuple):
+    """An event of the clock; a timeout also has its robot, kind and start."""
 
     time: int
     priority: int
@@ -35,7 +36,7 @@ class Trace:
     """Trace of the events of a game, and independent counts of the decisions of its robots."""
 
     def __init__(self, game: Game, monkeypatch: pytest.MonkeyPatch, record: str = "conflicts") -> None:
-        self.events: list[Happened] = []
+        self.events: list[ClockEvent] = []
         self.decided: Counter[str] = Counter()
         for name in ("begin_leg", "begin_wander_turn", "begin_wall_turn", "go_home", "meet"):
             self._count(monkeypatch, name)
@@ -55,21 +56,22 @@ class Trace:
         monkeypatch.setattr(Krembot, name, counted)
 
     def step(self) -> None:
-        """Note the event that is next, and let it happen."""
+        """Record the next event and process it."""
         self.events.append(self.read(0))
         self._step()
 
-    def read(self, place: int) -> Happened:
-        """Return an event in the clock's queue."""
+    def read(self, place: int) -> ClockEvent:
+        """Return an event of the clock's queue."""
         time, priority, _, event = self.model.env._queue[place]
         head = int(time), int(priority), isinstance(event, Instant) and int(priority) == MOTION
         if not isinstance(event, Timeout):
-            return Happened(*head)
+            return ClockEvent(*head)
         assert event.callbacks is not None
         (callback,) = event.callbacks
-        return Happened(*head, callback.__self__.index, str(event.value), int(time) - int(event._delay))  # type: ignore[attr-defined]
+        robot = callback.__self__  # type: ignore[attr-defined]
+        return ClockEvent(*head, robot.index, str(event.value), int(time) - int(event._delay))
 
-    def timeouts(self) -> list[Happened]:
+    def timeouts(self) -> list[ClockEvent]:
         """Return all timeouts, including those pending at the end of the game."""
         pending = [self.read(place) for place in range(len(self.model.env._queue))]
         return [event for event in self.events + pending if event.what]
@@ -114,9 +116,7 @@ def test_one_timeout_for_each_leg_turn_flight_and_fight(monkeypatch: pytest.Monk
 
 @pytest.mark.parametrize("preempt", [False, True])
 @pytest.mark.parametrize("record", ["", "model"])
-def test_there_are_few_other_events(
-    preempt: bool, record: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_there_are_few_other_events(preempt: bool, record: str, monkeypatch: pytest.MonkeyPatch) -> None:
     trace = Trace(make_game(preempt=preempt), monkeypatch, record)
     trace.model.play()
     counts = Counter(event.what for event in trace.timeouts())
@@ -127,26 +127,24 @@ def test_there_are_few_other_events(
     assert sum(1 for event in trace.events if not event.is_motion) <= 1.2 * (counts.total() + samples)
 
 
-def test_a_lone_robot_makes_the_clock_jump(monkeypatch: pytest.MonkeyPatch) -> None:
-    game = Game(swarms=(Swarm(policy="avoid", size=1),))
-    trace = Trace(game, monkeypatch)
+def test_a_lone_robot_has_fewer_events_than_periods(monkeypatch: pytest.MonkeyPatch) -> None:
+    trace = Trace(Game(swarms=(Swarm(policy="avoid", size=1),)), monkeypatch)
     trace.model.play()
     assert trace.model.env.now == 6000
     assert len(trace.events) < 1000
 
 
-def test_events_come_in_the_stated_order(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_events_of_one_instant_are_ordered_by_priority(monkeypatch: pytest.MonkeyPatch) -> None:
     trace = Trace(make_game(), monkeypatch, "model")
     trace.model.play()
-    # With priority −1 SimPy clears away the marks at which it paused.
+    # SimPy removes the events at which it paused with priority −1.
     events = [event for event in trace.events if event.priority >= 0]
     order = [event[:2] for event in events]
     assert order == sorted(order)
     kinds = defaultdict(set)
     for event in events:
-        kinds[event.priority].add(
-            "motion" if event.is_motion else "timeout" if event.what else "end or sample"
-        )
+        kind = "motion" if event.is_motion else "timeout" if event.what else "end or sample"
+        kinds[event.priority].add(kind)
     assert kinds == {0: {"end or sample"}, 1: {"timeout"}, MOTION: {"motion"}}
 
 
@@ -164,27 +162,17 @@ def test_a_leg_takes_its_draw_in_whole_periods_rounded_up(monkeypatch: pytest.Mo
 def test_a_sample_sees_the_world_after_the_previous_period() -> None:
     model = GameModel(make_game().replace(sample_period=0.1), seed=SEED, record="trajectory,conflicts")
     model.play()
-    tables = model.tables()
+    conflicts, trajectory = model.tables()["conflicts"], model.tables()["trajectory"]
     in_action = set()
-    for robot, start, t_a in zip(
-        *(tables["conflicts"][name] for name in ("robot", "start", "t_a")), strict=True
-    ):
+    for robot, start, t_a in zip(conflicts["robot"], conflicts["start"], conflicts["t_a"], strict=True):
         begin = round(start / 0.1)
-        # Not yet at the instant at which it begins, still at that at which it ends.
+        # A sample at the start of an action does not show it; one at its end does.
         in_action |= {(robot, time) for time in range(begin + 1, begin + round(t_a / 0.1) + 1)}
-    trajectory = tables["trajectory"]
-    seen = {
-        (robot, round(time / 0.1)): state
-        for robot, time, state in zip(*(trajectory[name] for name in ("robot", "time", "state")), strict=True)
-    }
+    samples = zip(trajectory["robot"], trajectory["time"], trajectory["state"], strict=True)
+    seen = {(robot, round(time / 0.1)): state for robot, time, state in samples}
     assert len(seen) == 15 * 1201
     assert {key for key, state in seen.items() if state == "A"} == in_action
     assert set(seen.values()) == {"A", "P"}
-
-
-def step_for_ever(model: GameModel) -> None:
-    while True:
-        model.env.step()
 
 
 def test_the_clock_run_by_hand_plays_the_same_game() -> None:
@@ -195,8 +183,9 @@ def test_the_clock_run_by_hand_plays_the_same_game() -> None:
     assert by_hand.ended == ""
     by_hand.env.run()
     assert (by_hand.ended, by_hand.env.now) == ("time", 1200)
-    with pytest.raises(StopSimulation):
-        step_for_ever(by_steps)
+    with suppress(StopSimulation):
+        while True:
+            by_steps.env.step()
     assert played.results() == by_hand.results() == by_steps.results()
     by_hand.play()
     assert not by_hand.running
@@ -241,7 +230,7 @@ def test_a_step_is_one_sampling_period(duration: float, sample_period: float, ti
         assert model.running
     assert model.ended == "time"
     results = model.results()
-    for _ in range(2):  # only now it says so, and nothing more happens
+    for _ in range(2):  # the next steps only stop the model
         model.step()
         assert not model.running
     assert model.results() == results

@@ -2,7 +2,6 @@
 
 import json
 import math
-from collections.abc import Iterator
 from contextlib import suppress
 from itertools import pairwise
 from typing import Any
@@ -13,9 +12,16 @@ from simpy.core import StopSimulation
 from kswarms.agents.actions import AWAY, Action
 from kswarms.agents.policies.saved import snapshot_of
 from kswarms.agents.robot.state import ACTION
-from kswarms.model.description.game import Game, Swarm
+from kswarms.model.description.game import Game
 from kswarms.model.description.parameters import PRESETS
 from kswarms.model.game_model import GameModel
+from tests.integration.phased_games import (
+    check_times_and_pucks,
+    conflicts_of,
+    make_game,
+    play,
+    play_learning_phase,
+)
 
 LEARNING, MEASURED = 120.0, 60.0
 SWITCH = 1200
@@ -24,48 +30,17 @@ ONE_AND_THE_SAME = (
     Action(name="flight", direction=AWAY, duration=1.8),
     Action(name="other-flight", direction=AWAY, duration=1.8),
 )
-"""Two actions between which a choice makes no difference to the world."""
-
-Row = dict[str, Any]
+"""Two actions with the same effect."""
 
 
-def game(*policies: str, size: int = 6, learning: float = LEARNING, **rest: Any) -> Game:
-    swarms = tuple(Swarm(policy=policy, size=size) for policy in policies)
-    return Game(swarms=swarms, learning=learning, **{"duration": MEASURED, **rest})
-
-
-def play(what: Game, seed: int = 0, record: str = "conflicts,robots") -> GameModel:
-    model = GameModel(what, seed, record=record)
-    model.play()
-    return model
-
-
-def at_the_switch(what: Game, seed: int = 0, record: str = "conflicts,robots") -> GameModel:
-    """Play the learning phase only; no robot has decided or moved in the measured game."""
-    model = GameModel(what.replace(sample_period=what.learning), seed, record=record)
-    model.step()
-    assert (model.env.now, model.phase) == (SWITCH, "game")
-    return model
+def game(*policies: str, **fields: Any) -> Game:
+    return make_game(*policies, **{"learning": LEARNING, "duration": MEASURED, **fields})
 
 
 def world(model: GameModel) -> bytes:
     """Return the state of the world: bodies, actions, carried pucks, supplies."""
     positions = model.space.agent_positions.tobytes()
     return positions + model.states.robots.tobytes() + json.dumps(model.supply).encode()
-
-
-def rows_of(model: GameModel, phase: str) -> list[Row]:
-    table = model.tables()["conflicts"]
-    rows = [dict(zip(table, values, strict=True)) for values in zip(*table.values(), strict=True)]
-    return [row for row in rows if row["phase"] == phase]
-
-
-def events(model: GameModel) -> Iterator[None]:
-    """Process one event of the clock per step, to the end of the game."""
-    with suppress(StopSimulation):
-        while True:
-            model.env.step()
-            yield
 
 
 # The measured game continues the world.
@@ -76,12 +51,12 @@ def events(model: GameModel) -> Iterator[None]:
 def test_the_switch_changes_nothing_in_the_world(policies: str, preempt: bool) -> None:
     """Without learners, two phases equal one game of their total length."""
     rest = {"supply": 9, "parameters": PRESETS["fitted"].replace(preempt=preempt)}
-    phased = at_the_switch(game(*policies.split(","), **rest))
+    phased = play_learning_phase(game(*policies.split(","), **rest))
     rest |= {"duration": LEARNING + MEASURED, "sample_period": LEARNING}
     whole = GameModel(game(*policies.split(","), learning=0.0, **rest))
     whole.step()
     assert world(phased) == world(whole)
-    # Something is under way that a new start would interrupt.
+    # Actions and transports are under way, which a restart would interrupt.
     assert ACTION in phased.states.phase.tolist()
     assert phased.carried_at_start == sum(phased.states.carrying.tolist()) > 0
     assert 0 < sum(phased.supply) < 18
@@ -94,7 +69,6 @@ def test_the_switch_changes_nothing_in_the_world(policies: str, preempt: bool) -
 
 
 def test_draws_of_a_learner_do_not_change_other_streams() -> None:
-    """Random choice among actions that are the same leaves every other draw of every robot alone."""
     for policy in (
         "learner(rule='uniform-random')",
         "learner(rule='periodic-random(every=2)')",
@@ -103,14 +77,14 @@ def test_draws_of_a_learner_do_not_change_other_streams() -> None:
     ):
         learners = play(game("avoid", policy, actions=ONE_AND_THE_SAME))
         fixed = play(game("avoid", "avoid", actions=ONE_AND_THE_SAME))
-        actions = {row["action"] for row in rows_of(learners, "learning") if row["swarm"] == 2}
+        actions = {row["action"] for row in conflicts_of(learners, "learning") if row["swarm"] == 2}
         assert actions == {"flight", "other-flight"}
         assert world(learners) == world(fixed)
         assert learners.pucks == fixed.pucks
 
 
 def test_scores_times_and_conflicts_restart() -> None:
-    model = at_the_switch(game("avoid", "learner"))
+    model = play_learning_phase(game("avoid", "learner"))
     assert model.pucks == [0, 0]
     assert (model.picked_up, model.duration) == (0, 0.0)
     for row in model.results():
@@ -119,40 +93,28 @@ def test_scores_times_and_conflicts_restart() -> None:
     for robot in model.robots:
         assert robot.times() == ([0, 0], 0)
         assert (robot.pucks, robot.conflicts) == (0, [0, 0])
-    learned = rows_of(model, "learning")
+    learned = conflicts_of(model, "learning")
     assert learned
     model.play()
-    assert json.dumps(rows_of(model, "learning")) == json.dumps(learned)
-    began = [sum(row["swarm"] == k for row in rows_of(model, "game")) for k in (1, 2)]
+    assert json.dumps(conflicts_of(model, "learning")) == json.dumps(learned)
+    began = [sum(row["swarm"] == k for row in conflicts_of(model, "game")) for k in (1, 2)]
     assert [row["conflicts_intra"] + row["conflicts_inter"] for row in model.results()] == began
 
 
 @pytest.mark.parametrize("policies", ["attack,learner", "avoid,inter-learner,aggressive", "learner"])
 @pytest.mark.parametrize("end", [{}, {"puck_limit": 5, "duration": 600.0}, {"puck_limit": 500}])
 def test_times_and_pucks_of_the_measured_game_add_up(policies: str, end: dict[str, Any]) -> None:
-    model = play(game(*policies.split(","), **end))
-    measured = model.env.now - SWITCH
-    for robot in model.robots:
-        t_a, t_p = robot.times()
-        assert sum(t_a) + t_p == measured
-        assert min(*t_a, t_p) >= 0
-    for row in model.results():
-        assert row["t_a_intra"] + row["t_a_inter"] + row["t_p"] == pytest.approx(row["size"] * measured * 0.1)
-        assert row["duration"] == pytest.approx(measured * 0.1)
-    carried = sum(robot.carrying for robot in model.robots)
-    assert model.picked_up + model.carried_at_start == sum(model.pucks) + carried
-    assert model.pucks == [sum(robot.pucks for robot in members) for members in model.members]
+    check_times_and_pucks(play(game(*policies.split(","), **end)))
 
 
-def test_a_running_action_is_split_at_the_switch() -> None:
-    model = at_the_switch(game("attack", "attack"))
+def test_a_running_action_is_split_play_learning_phase() -> None:
+    model = play_learning_phase(game("attack", "attack"))
     acting = [robot for robot in model.robots if robot.state == "A"]
     assert acting
     model.env.run(until=SWITCH + 1)
-    # In its first period a running action continues, since no robot has begun another.
-    going_on = [robot for robot in acting if sum(robot.conflicts) == 0 and robot.state == "A"]
-    assert going_on
-    for robot in going_on:
+    continued = [robot for robot in acting if sum(robot.conflicts) == 0 and robot.state == "A"]
+    assert continued
+    for robot in continued:
         assert (sum(robot.times()[0]), robot.times()[1]) == (1, 0)
 
 
@@ -162,20 +124,17 @@ def test_a_running_action_is_split_at_the_switch() -> None:
 @pytest.mark.parametrize("policy", ["learner", "inter-learner", "learner(rule='uniform-random')"])
 def test_after_the_switch_nothing_is_learned_or_explored(policy: str) -> None:
     what = game("attack", policy)
-    model = at_the_switch(what)
+    model = play_learning_phase(what)
     learned = repr([snapshot_of(robot.policy) for robot in model.robots])
     model.play()
     assert repr([snapshot_of(robot.policy) for robot in model.robots]) == learned
-    played = [row for row in rows_of(model, "game") if row["swarm"] == 2]
+    played = [row for row in conflicts_of(model, "game") if row["swarm"] == 2]
     assert len(played) > 30
     assert all(math.isnan(row["reward"]) and math.isnan(row["q"]) for row in played)
     taken = set()
     for row in played:
-        arms = [
-            arm
-            for arm in snapshot_of(model.robots[row["robot"]].policy)
-            if arm["opponent"] == row["opponent_swarm"] and arm["count"] > 0
-        ]
+        arms = snapshot_of(model.robots[row["robot"]].policy)
+        arms = [arm for arm in arms if arm["opponent"] == row["opponent_swarm"] and arm["count"] > 0]
         best = max(arms, key=lambda arm: arm["q"])["action"] if arms else "flight"
         assert row["action"] == best
         taken.add((bool(arms), row["action"]))
@@ -183,11 +142,10 @@ def test_after_the_switch_nothing_is_learned_or_explored(policy: str) -> None:
 
 
 def test_without_data_the_learned_action_is_flight() -> None:
-    """A learning too short for any conflict to be closed in it."""
-    what = game("attack", "learner", learning=0.1, actions=tuple(reversed(PRESETS["fitted"].actions())))
-    model = play(what)
+    # No conflict is closed in such a short learning phase.
+    model = play(game("attack", "learner", learning=0.1, actions=PRESETS["fitted"].actions()[::-1]))
     assert all(arm["count"] == 0 for robot in model.members[1] for arm in snapshot_of(robot.policy))
-    actions = [row["action"] for row in rows_of(model, "game") if row["swarm"] == 2]
+    actions = [row["action"] for row in conflicts_of(model, "game") if row["swarm"] == 2]
     assert len(actions) > 50
     assert set(actions) == {"flight"}
 
@@ -195,7 +153,7 @@ def test_without_data_the_learned_action_is_flight() -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_the_conflict_open_at_the_switch_gets_no_reward(seed: int) -> None:
     model = play(game("attack", "learner"), seed)
-    learned = [row for row in rows_of(model, "learning") if row["swarm"] == 2]
+    learned = [row for row in conflicts_of(model, "learning") if row["swarm"] == 2]
     last = {row["robot"]: row for row in sorted(learned, key=lambda row: row["start"])}
     assert len(last) == 6
     for row in learned:
@@ -213,7 +171,7 @@ def test_the_first_conflict_of_the_measured_game_rewards_nothing() -> None:
     """The conflict that was open at the switch is already closed."""
     model = play(game("attack", "learner"))
     for robot in model.members[1]:
-        rows = [row for phase in ("learning", "game") for row in rows_of(model, phase)]
+        rows = [row for phase in ("learning", "game") for row in conflicts_of(model, phase)]
         rows = sorted((row for row in rows if row["robot"] == robot.index), key=lambda row: row["start"])
         for row, following in pairwise(rows):
             ends = row["start"] + row["t_a"] + row["t_p"]
@@ -228,14 +186,14 @@ def test_the_first_conflict_of_the_measured_game_rewards_nothing() -> None:
 
 
 def test_simpy_events_end_both_phases() -> None:
-    """Only the clock is wound; each phase ends at its instant, before anything else that happens then."""
     model = GameModel(game("attack", "learner"), record="conflicts")
-    began = []
-    for _ in events(model):
-        if not began and model.phase == "game":
-            began.append(model.env.now)
-            assert sum(sum(robot.conflicts) for robot in model.robots) == 0
-    assert began == [SWITCH]
+    while model.phase == "learning":
+        model.env.step()
+    assert model.env.now == SWITCH
+    assert sum(sum(robot.conflicts) for robot in model.robots) == 0  # the phase ends before all other events
+    with suppress(StopSimulation):
+        while True:
+            model.env.step()
     assert (model.env.now, model.ended) == (SWITCH + 600, "time")
 
 
@@ -253,7 +211,7 @@ def test_a_puck_limit_counts_from_the_switch() -> None:
     limit = 4
     unlimited = play(game("avoid", "learner", learning=LEARNING, duration=600.0))
     deposited = play(game("avoid", "learner", learning=0.1, duration=LEARNING - 0.1))
-    assert sum(deposited.pucks) > limit  # it would end in the learning if those counted
+    assert sum(deposited.pucks) > limit  # in the learning phase
     model = play(game("avoid", "learner", duration=600.0, puck_limit=limit))
     assert (sum(model.pucks), model.ended) == (limit, "pucks")
     assert SWITCH < model.env.now < unlimited.env.now
@@ -263,8 +221,7 @@ def test_a_puck_limit_counts_from_the_switch() -> None:
 
 
 def test_samples_show_both_phases() -> None:
-    model = GameModel(game("avoid", "learner"), record="model")
-    model.play()
+    model = play(game("avoid", "learner"), record="model")
     frame = model.datacollector.get_model_vars_dataframe()
     assert frame["time"].tolist() == [10.0 * k for k in range(19)]
     pucks = (frame["pucks_1"] + frame["pucks_2"]).tolist()
@@ -274,15 +231,10 @@ def test_samples_show_both_phases() -> None:
         assert part == sorted(part)
 
 
-# The same again.
-
-
 def test_sampling_does_not_change_what_is_learned() -> None:
     what = game("attack", "learner", sample_period=0.7)
-    seen = [GameModel(what, 2, record=record) for record in ("", "model,agents,conflicts")]
-    for model in seen:
-        model.play()
-    learned = [[snapshot_of(robot.policy) for robot in model.robots] for model in seen]
-    assert repr(learned[0]) == repr(learned[1])
+    seen = [play(what, 2, record) for record in ("", "model,agents,conflicts")]
+    first, second = (repr([snapshot_of(robot.policy) for robot in model.robots]) for model in seen)
+    assert first == second
     assert world(seen[0]) == world(seen[1])
     assert seen[0].results() == seen[1].results()

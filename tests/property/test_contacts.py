@@ -140,10 +140,7 @@ def test_a_wall_removes_the_normal_motion_and_friction(
 ) -> None:
     outwards = unit(side * math.pi / 2).round()
     scene = make_scene(
-        game_of(1, friction, push_share),
-        [(1 - R - gap) * outwards],
-        [side * math.pi / 2 + turn],
-        STRIDE,
+        game_of(1, friction, push_share), [(1 - R - gap) * outwards], [side * math.pi / 2 + turn], STRIDE
     )
     blocked = max(0.0, STRIDE * math.cos(turn) - gap)
     along = max(0.0, STRIDE * abs(math.sin(turn)) - friction * blocked)

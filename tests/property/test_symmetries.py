@@ -10,16 +10,7 @@ from hypothesis import strategies as st
 from kswarms.agents.body import KREMBOT_SIM, SENSORS
 from kswarms.agents.common.arrays import Integers
 from kswarms.model.kernel.arrays import CONFLICT
-from tests.reference.states import (
-    Scene,
-    clone,
-    crowded,
-    game_of,
-    make_scene,
-    mirrored,
-    play_period,
-    scenes,
-)
+from tests.reference.states import Scene, clone, crowded, game_of, make_scene, mirrored, play_period, scenes
 
 R = KREMBOT_SIM.radius
 STRIDE = 0.015

@@ -8,12 +8,11 @@ import pandas as pd
 import pytest
 
 from kswarms.agents.common.limits import LONGEST_TIME, SHORTEST_PERIOD, SLOWEST_TURN
-from kswarms.agents.theory.swarms import swarm_utility_difference
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.description.parameters import PRESETS
 from kswarms.model.foraging import ForagingModel
 from kswarms.model.game_model import GameModel
-from kswarms.model.recorder import RECORDS, parse_record
+from kswarms.model.recorder import RECORDS
 
 GAME = Game(
     swarms=(Swarm(policy="avoid", size=4), Swarm(policy="attack", size=5), Swarm(policy="mixed", size=3)),
@@ -27,7 +26,7 @@ def played(record: str = "", sample_period: float = 10.0, seed: int = 2) -> Game
     return model
 
 
-def test_it_is_a_mesa_model_of_robots_in_a_continuous_space() -> None:
+def test_a_game_is_a_mesa_model_of_robots_in_a_continuous_space() -> None:
     model = GameModel(GAME)
     assert isinstance(model, mesa.Model)
     assert list(model.agents) == model.robots == list(model.space.agents)
@@ -38,7 +37,7 @@ def test_it_is_a_mesa_model_of_robots_in_a_continuous_space() -> None:
     assert not model.space.torus
 
 
-def test_what_the_limits_of_the_parameters_allow_can_be_played() -> None:
+def test_games_with_parameters_at_their_limits_can_be_played() -> None:
     times = dict.fromkeys(("flight_duration", "fight_duration", "leg_mean"), LONGEST_TIME)
     for rest in ({"turning_rate": SLOWEST_TURN}, {"turning_rate": 1e308}, {"leg_mean": 1e-308}):
         slow = PRESETS["fitted"].replace(period=SHORTEST_PERIOD, conflict_distance=0.5, **(times | rest))
@@ -84,20 +83,12 @@ def test_neighbour_queries_are_right_at_any_time() -> None:
             assert distances[nearest[0]] == min(d for other, d in distances.items() if other is not robot)
 
 
-def test_the_models_frame() -> None:
+def test_the_samples_of_the_model() -> None:
     model = played("model")
     frame = model.datacollector.get_model_vars_dataframe()
-    kinds = ("pucks", "sud", "share_a", "share_p")
-    of_swarm = {
-        *kinds,
-        "size",
-        "policy",
-        "t_a_intra",
-        "t_a_inter",
-        "t_p",
-        "conflicts_intra",
-        "conflicts_inter",
-    }
+    kinds = ["pucks", "sud", "share_a", "share_p"]
+    others = "size policy t_a_intra t_a_inter t_p conflicts_intra conflicts_inter"
+    of_swarm = {*kinds, *others.split()}
     of_swarms = {f"{kind}_{k}" for kind in of_swarm for k in (1, 2, 3)}
     assert set(frame.columns) == {"time", "game_time", "ended"} | of_swarms
     assert frame["time"].tolist() == [0, 10, 20, 30, 40, 50, 60] == model.sample_times
@@ -111,7 +102,7 @@ def test_the_models_frame() -> None:
     assert frame.filter(like="pucks").diff().min().min() in (0, np.nan)
 
 
-def test_the_agents_frame() -> None:
+def test_the_samples_of_the_agents() -> None:
     model = played("agents", sample_period=5.0)
     frame = model.datacollector.get_agent_vars_dataframe()
     assert list(frame.columns) == ["swarm", "state", "puck", "x", "y", "heading"]
@@ -140,9 +131,8 @@ def test_the_table_of_conflicts() -> None:
     assert set(table["phase"]) == {"game"}
     assert table["active"].between(0, 8).all()
     for row in table.to_dict("records"):
-        assert [list(swarm[list(seen)]) for seen in row["seen"]] == [
-            [k + 1] * len(s) for k, s in enumerate(row["seen"])
-        ]
+        for k, seen in enumerate(row["seen"]):
+            assert (swarm[list(seen)] == k + 1).all()
         assert row["opponent"] in row["seen"][row["opponent_swarm"] - 1]
         assert sum(map(len, row["seen"])) <= row["active"]
     assert table[["x", "y"]].abs().max().max() <= 1 - 0.085 + 1e-9
@@ -155,7 +145,7 @@ def test_the_table_of_conflicts() -> None:
         assert (len(own) - inter.sum(), inter.sum()) == (row["conflicts_intra"], row["conflicts_inter"])
         assert own.loc[~inter, "t_a"].sum() == pytest.approx(row["t_a_intra"])
         assert own.loc[inter, "t_a"].sum() == pytest.approx(row["t_a_inter"])
-        # Before its first conflict a robot's time belongs to none.
+        # The time before the first conflict of a robot belongs to no conflict.
         first = own.groupby("robot")["start"].min()
         never = row["size"] - len(first)
         assert own["t_p"].sum() + first.sum() + 60 * never == pytest.approx(row["t_p"])
@@ -205,24 +195,10 @@ def test_only_requested_records_are_kept(
     assert (model.conflict_log is None) == ("conflicts" not in record)
 
 
-def test_records_are_parsed() -> None:
-    assert parse_record("model, agents,,") == {"model", "agents"}
-    assert parse_record("") == frozenset()
-
-
-@pytest.mark.parametrize(
-    ("pucks", "sud"), [([5], [5]), ([5, 3], [2, -2]), ([4, 3, 1], [0, -2, -6]), ([0, 0], [0, 0])]
-)
-def test_sud_is_the_own_score_less_all_others(pucks: list[int], sud: list[int]) -> None:
-    assert [swarm_utility_difference(pucks, k) for k in range(len(pucks))] == sud
-
-
 def test_the_columns_of_results() -> None:
     rows = played().results()
-    columns = (
-        "swarm size policy pucks sud t_a_intra t_a_inter t_p conflicts_intra conflicts_inter duration ended"
-    )
-    assert [list(row) for row in rows] == [columns.split()] * 3
+    columns = "swarm size policy pucks sud t_a_intra t_a_inter t_p conflicts_intra conflicts_inter duration"
+    assert [list(row) for row in rows] == [[*columns.split(), "ended"]] * 3
     assert [row["policy"] for row in rows] == ["avoid", "attack", "mixed"]
     assert [type(row["pucks"]) for row in rows] == [int] * 3
 

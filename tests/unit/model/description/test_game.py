@@ -22,10 +22,17 @@ from kswarms.model.game_model import GameModel
 AVOID = Swarm(policy="avoid", size=10)
 FITTED = PRESETS["fitted"]
 LARGE = {"radius": 0.1, "sensor_range": 0.5, "top_speed": 0.3}
+DASH = Action(name="dash", direction=-1, duration=0.05)
+RAM = Action(name="ram", direction=1, duration=2.0)
 
 
 def game(**fields: Any) -> Game:
     return Game(**{"swarms": (AVOID, AVOID), **fields})
+
+
+def swarm(**fields: Any) -> dict[str, Any]:
+    """Return the swarms of a game of one swarm."""
+    return {"swarms": ({"policy": "avoid", "size": 2, **fields},)}
 
 
 def test_the_defaults_are_those_of_the_experiments() -> None:
@@ -70,18 +77,15 @@ def test_policies_are_texts_classes_callables_or_lists() -> None:
         Swarm(policy=3, size=1)
 
 
-def test_actions_of_its_own_replace_the_standard_ones() -> None:
-    dash = Action(name="dash", direction=-1, duration=0.05)
-    ram = Action(name="ram", direction=1, duration=2.0)
-    assert game(actions=(dash, ram)).action_set == (dash, ram)
-    assert game(actions=(dash,), swarms=(Swarm(policy="dash", size=2),)).action_set == (dash,)
+def test_user_defined_actions_replace_the_standard_ones() -> None:
+    assert game(actions=(DASH, RAM)).action_set == (DASH, RAM)
+    assert game(actions=(DASH,), **swarm(policy="dash")).action_set == (DASH,)
 
 
 @pytest.mark.parametrize("name", ["attack", "learner", "mixed"])
 def test_no_action_has_the_name_of_a_policy(name: str) -> None:
-    dash, ram = Action(name="dash", direction=-1, duration=0.05), Action(name=name, direction=1, duration=2.0)
     with pytest.raises(InputError, match=f"^actions='{name}': must not have the name of a policy$"):
-        game(actions=(dash, ram))
+        game(actions=(DASH, RAM.replace(name=name)))
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
@@ -112,26 +116,14 @@ def test_presets_and_limits_have_short_forms() -> None:
     ("fields", "message"),
     [
         ({"swarms": ()}, "swarms=(): "),
-        (
-            {"swarms": ({"policy": "avoid", "size": 0},)},
-            "swarms.0.size=0: must be greater than or equal to 1",
-        ),
-        (
-            {"swarms": ({"policy": "avoid", "size": 10**400},)},
-            f"swarms.0.size={10**400}: must be less than or equal to 1000000",
-        ),
-        ({"swarms": ({"policy": "avoid", "size": -3},)}, "swarms.0.size=-3: "),
-        ({"swarms": ({"policy": "avoid", "size": 2.5},)}, "swarms.0.size=2.5: must be a valid integer"),
-        (
-            {"swarms": ({"policy": "avoid", "size": 2, "drive": 0},)},
-            "swarms.0.drive=0: must be greater than 0",
-        ),
-        (
-            {"swarms": ({"policy": "avoid", "size": 2, "drive": 1.1},)},
-            "swarms.0.drive=1.1: must be less than",
-        ),
-        ({"swarms": ({"policy": "avoid", "size": 2, "drive": math.nan},)}, "swarms.0.drive=nan: "),
-        ({"swarms": ({"policy": "avoid", "size": 2, "drive_action": -1},)}, "swarms.0.drive_action=-1: "),
+        (swarm(size=0), "swarms.0.size=0: must be greater than or equal to 1"),
+        (swarm(size=10**400), f"swarms.0.size={10**400}: must be less than or equal to 1000000"),
+        (swarm(size=-3), "swarms.0.size=-3: "),
+        (swarm(size=2.5), "swarms.0.size=2.5: must be a valid integer"),
+        (swarm(drive=0), "swarms.0.drive=0: must be greater than 0"),
+        (swarm(drive=1.1), "swarms.0.drive=1.1: must be less than"),
+        (swarm(drive=math.nan), "swarms.0.drive=nan: "),
+        (swarm(drive_action=-1), "swarms.0.drive_action=-1: "),
         ({"swarms": (AVOID, {"policy": "flee", "size": 2})}, "policy='flee': must be one of avoid, attack"),
         ({"swarms": ({"size": 2},)}, "swarms.0.policy=None: is required"),
         ({"layout": "round"}, "layout='round': must be 'symmetric', 'nearer-station' or 'random-stations'"),
@@ -139,7 +131,7 @@ def test_presets_and_limits_have_short_forms() -> None:
         ({"absent": (20,)}, "absent=20: must be a robot of the game, 0 to 19"),
         ({"absent": (3, -1)}, "absent=-1: must be a robot of the game, 0 to 19"),
         ({"absent": (3, 4, 3)}, "absent=(3, 3, 4): must name each robot once"),
-        ({"absent": (0,), "swarms": ({"policy": "avoid", "size": 1},)}, "absent=(0,): must leave a robot"),
+        ({"absent": (0,), **swarm(size=1)}, "absent=(0,): must leave a robot"),
         ({"absent": (1.5,)}, "absent.0=1.5: must be a valid integer"),
         ({"absent": (1,), "absent_from": "dinner"}, "absent_from='dinner': must be 'learning' or 'game'"),
         ({"side": 0}, "side=0: must be greater than 0"),
@@ -163,18 +155,17 @@ def test_presets_and_limits_have_short_forms() -> None:
         ({"stations": [(0.0, 0.0)], "layout": "random-stations"}, "stations=((0.0, 0.0),): must not be giv"),
         ({"bases": [(0.5, 0.0)]}, "bases=((0.5, 0.0),): must be 2 places, one per swarm"),
         ({"bases": [(0.5, 0.0), (0.6, 0.0)]}, "base 2=[0.6, 0.0]: with radius 0.17 m must not overlap base"),
-        (
-            {"actions": ({"name": "a", "direction": 1, "duration": 1},) * 2},
-            "actions=['a', 'a']: must have different names",
-        ),
+        ({"actions": (RAM, RAM)}, "actions=['ram', 'ram']: must have different names"),
         ({"parameters": {"base_radius": 0.21}}, "base 1="),
-        ({"parameters": {"station_radius": 0.35}}, "station 1="),
-        ({"swarms": (AVOID,) * 3, "parameters": {"base_radius": 0.19}}, "base 3="),
-        ({"swarms": (Swarm(policy="avoid", size=200),)}, "n=200: robots of radius 0.085 m do not fit"),
-        (
-            {"side": 0.8, "parameters": {"station_radius": 0.05, "base_radius": 0.05}},
-            "n=20: robots of radius",
-        ),
+        (swarm(size=200), "n=200: robots of radius 0.085 m do not fit"),
+        ({"side": 0.8, "parameters": "fitted, station_radius=0.05, base_radius=0.05"}, "n=20: robots of ra"),
+        ({"parameters": {"wall_clearance": 1}}, "n=20: robots of radius 0.085 m do not fit in"),
+        ({"parameters": {"wall_clearance": 9000}}, "n=20: robots of radius 0.085 m do not fit in"),
+        ({"parameters": {"wall_distance": 1.5}}, "wall_distance=1.5: must be less than half the arena"),
+        ({"sample_period": 0}, "sample_period=0: must be greater than 0"),
+        ({"sample_period": math.nan}, "sample_period=nan: "),
+        ({"sample_period": 1e308}, "sample_period=1e+308: must be less than or equal to 1000000000"),
+        ({"sample_period": "often"}, "sample_period='often': "),
         ({"parameters": {"period": 0.5}}, "period=0.5: must be so short"),
         ({"side": 1e7}, "side=10000000.0: must be less than or equal to 10000"),
         ({"side": True}, "side=True: must be a number"),
@@ -184,15 +175,8 @@ def test_presets_and_limits_have_short_forms() -> None:
         ({"supply": 2**63}, "supply=9223372036854775808: must be less than or equal to 1000000000"),
         ({"layout": "nearer-station", "swarms": (AVOID,) * 3}, "layout='nearer-station': must have"),
         ({"layout": "random-stations", "parameters": {"station_radius": 0.6}}, "station_radius=0.6: "),
-        ({"layout": "random-stations", "parameters": {"base_radius": 0.9}}, "base 1="),
         ({"body": "krembot", "parameters": {"period": 0.2}}, "period=0.2: must be so short"),
-        (
-            {
-                "parameters": {"period": 0.35},
-                "swarms": (Swarm(policy="avoid", size=1, drive=0.1, drive_action=0.9),),
-            },
-            "period=0.35: must be so short",
-        ),
+        ({"parameters": {"period": 0.35}, **swarm(drive=0.1, drive_action=0.9)}, "period=0.35: must be so"),
     ],
 )
 def test_bad_input_is_one_line_with_field_value_and_what_is_allowed(
@@ -205,27 +189,24 @@ def test_bad_input_is_one_line_with_field_value_and_what_is_allowed(
 
 
 def test_a_robot_may_cover_eight_tenths_of_its_radius_in_a_period() -> None:
-    fast = (Swarm(policy="avoid", size=2, drive=0.68, drive_action=0.68),)
-    assert game(swarms=fast, parameters=FITTED.replace(period=0.40)).size == 2
+    fast = swarm(drive=0.68, drive_action=0.68)
+    assert game(**fast, parameters=FITTED.replace(period=0.40)).size == 2
     with pytest.raises(InputError, match=r"^period=0.41: must be so short"):
-        game(swarms=fast, parameters=FITTED.replace(period=0.41))
+        game(**fast, parameters=FITTED.replace(period=0.41))
 
 
 @pytest.mark.parametrize("body", ["krembot-sim", "krembot"])
 @pytest.mark.parametrize("drive", [0.6, 0.7])
 def test_the_drives_of_the_experiments_suit_both_bodies(body: str, drive: float) -> None:
-    assert game(body=body, swarms=(Swarm(policy="avoid", size=2, drive=drive),)).size == 2
+    assert game(body=body, **swarm(drive=drive)).size == 2
 
 
 @pytest.mark.parametrize(
     ("n", "shares", "sizes"),
     [
-        (10, [1], [10]),
-        (10, [1, 1], [5, 5]),
         (11, [1, 1], [6, 5]),
         (13, [7, 6], [7, 6]),
         (6, [1, 2, 1], [2, 3, 1]),
-        (10, [1, 1, 1], [4, 3, 3]),
         (11, [1, 1, 1], [4, 4, 3]),
         (5, [1, 100], [0, 5]),
     ],

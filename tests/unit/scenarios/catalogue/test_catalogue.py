@@ -27,19 +27,18 @@ ACTIONS = {
 }
 
 DELTAS = (0.02, 0.1, 0.125, 0.145)
+RULES = ("ucb", "discounted-ucb", "greedy", "periodic-random-5", "periodic-random-20")
 
 
 def by_delta(policies: str, *deltas: float) -> dict[str, str]:
     return {f"delta={delta}": policies for delta in deltas}
 
 
-# id: curve: policies in order, ">" marking a fast swarm; "?" is a learner, of which LEARNED says more.
+# Policies of each curve of each scenario: ">" is a fast swarm, "?" a learner (see LEARNED).
 CURVES: dict[str, dict[str, str]] = {
     "fig-6.1a": {"": "avoid avoid"},
     "fig-6.1b": {"": "attack attack"},
-    "fig-6.1c": {"": "avoid attack"},
-    "fig-6.2": {"": "avoid attack"},
-    "fig-6.3": {"": "avoid attack"},
+    **{name: {"": "avoid attack"} for name in ("fig-6.1c", "fig-6.2", "fig-6.3")},
     "fig-6.4a": {"": "avoid ?"},
     "fig-6.4b": {"": "attack ?"},
     "fig-6.5a": {"": "avoid ?"},
@@ -50,22 +49,13 @@ CURVES: dict[str, dict[str, str]] = {
     "fig-6.9": {"": "attack ?"},
     "fig-6.10a": {"wlu": "attack ?", "individual": "attack ?"},
     "fig-6.10b": {"wlu": "avoid ?", "individual": "avoid ?"},
-    "fig-6.11a": {"": "attack ?"},
-    "fig-6.11b": {"": "attack ?"},
-    "fig-6.11c": {"": "attack ?"},
-    "fig-6.11d": {"": "attack ?"},
+    **{f"fig-6.11{letter}": {"": "attack ?"} for letter in "abcd"},
     "fig-6.12": by_delta("attack ?", 0.02, 0.08, 0.125, 0.2, 0.25) | {"random": "attack random"},
     "fig-6.13a": {"": "avoid attack"},
     "fig-6.13b": {"": "avoid avoid"},
     "fig-6.13c": {"": "attack ?"},
     "fig-6.13d": {"": "avoid ?"},
-    "fig-6.14": {
-        "ucb": "attack ?",
-        "discounted-ucb": "attack ?",
-        "greedy": "attack ?",
-        "periodic-random-5": "attack ?",
-        "periodic-random-20": "attack ?",
-    },
+    "fig-6.14": dict.fromkeys(RULES, "attack ?"),
     "fig-6.15": {name: name for name in ACTIONS} | {"learner": "?"},
     "fig-7.1": {"": ">avoid avoid"},
     "fig-7.2a": {"": ">avoid attack"},
@@ -96,7 +86,7 @@ CURVES: dict[str, dict[str, str]] = {
 
 
 class Learned(NamedTuple):
-    """What a learner learns about (swarms from 1), from which reward and by which rule."""
+    """Opponents (swarms from 1), reward and rule of a learner."""
 
     about: Sequence[int] = (1,)
     reward: Reward = WLU()
@@ -113,8 +103,7 @@ LEARNED = {
     ("fig-6.7", ""): Learned(about=[2]),
     ("fig-6.8", ""): Learned(about=[1, 2]),
     ("fig-6.9", ""): Learned(reward=IndividualUtility()),
-    ("fig-6.10a", "individual"): Learned(reward=IndividualUtility()),
-    ("fig-6.10b", "individual"): Learned(reward=IndividualUtility()),
+    **{(f"fig-6.10{letter}", "individual"): Learned(reward=IndividualUtility()) for letter in "ab"},
     ("fig-6.11a", ""): Learned(reward=WLU(delta=0.25)),
     ("fig-6.11b", ""): Learned(reward=WLU(delta=0.2)),
     ("fig-6.11c", ""): Learned(reward=WLU(delta=0.08)),
@@ -137,9 +126,7 @@ LEARNED = {
     },
     **{("fig-7.10", f"delta={delta}"): Learned([1, 3], stronger(delta)) for delta in DELTAS},
     **{("fig-7.11", f"delta={delta}"): Learned([1, 3], stronger({1: delta, 3: 0.125})) for delta in DELTAS},
-    ("fig-7.13b", ""): Learned(reward=stronger()),
-    ("fig-7.16b", ""): Learned(reward=stronger()),
-    ("fig-7.18b", ""): Learned(reward=stronger()),
+    **{(name, ""): Learned(reward=stronger()) for name in ("fig-7.13b", "fig-7.16b", "fig-7.18b")},
     ("fig-7.19", "b=7/6"): Learned(reward=stronger()),
 }
 LEARNERS = [
@@ -184,12 +171,8 @@ def test_swarms_have_the_policies_and_drives_of_the_source(name: str) -> None:
     }
     assert read == CURVES[name]
     assert list(read) == list(CURVES[name])
-    drives = {
-        (rule.drive, rule.drive_action)
-        for condition in CATALOGUE[name].conditions
-        for rule in condition.swarms
-    }
-    assert drives <= {(0.7, 0.6), (0.6, 0.6)}
+    for condition in CATALOGUE[name].conditions:
+        assert {(rule.drive, rule.drive_action) for rule in condition.swarms} <= {(0.7, 0.6), (0.6, 0.6)}
 
 
 @pytest.mark.parametrize(("name", "condition", "swarm"), LEARNERS)
@@ -261,9 +244,11 @@ def test_explicit_defaults_are_left_out_of_the_text() -> None:
     assert plain.policy == "inter-learner"
     assert reward_of(delta={1: 0.125, 3: 0.125}) == "wlu"
     assert reward_of(delta={1: 0.02, 3: 0.125}, b=7 / 6) == "wlu(delta={1: 0.02}, b=1.1666666666666667)"
-    told = learner("learner", reward=reward_of("individual", half=True), rule=rule_of("greedy"), share=3)
-    assert told.policy == "learner(reward='individual(half=True)', rule='greedy')"
-    assert told.share == 3
+    with_arguments = learner(
+        "learner", reward=reward_of("individual", half=True), rule=rule_of("greedy"), share=3
+    )
+    assert with_arguments.policy == "learner(reward='individual(half=True)', rule='greedy')"
+    assert with_arguments.share == 3
     defaults = inspect.signature(Learner).parameters
     assert (defaults["reward"].default, defaults["rule"].default) == ("wlu", "ucb")
 

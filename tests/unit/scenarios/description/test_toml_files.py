@@ -71,9 +71,7 @@ def test_fields_at_their_defaults_may_be_left_out(tmp_path: Path) -> None:
         (HUNT, "", "hunt.toml: id=None: is required"),
     ],
 )
-def test_an_error_names_the_file_and_the_field(
-    before: str, after: str, message: str, tmp_path: Path
-) -> None:
+def test_an_error_names_the_file_and_the_field(before: str, after: str, message: str, tmp_path: Path) -> None:
     file = tmp_path / "hunt.toml"
     assert before in HUNT
     file.write_text(HUNT.replace(before, after))
