@@ -28,18 +28,10 @@ _NUMBER: Final = re.compile(r"^(–$|[+−-]?[\d.]+(\s|$))")
 
 @dataclass(frozen=True)
 class TextTable:
-    """A table of strings.
+    """A table of strings; the first cell of a row names it.
 
-    Attributes
-    ----------
-    header : list of str
-        Names of the columns; a long name may contain line breaks.
-    rows : list of list of str
-        Cells; each row has a cell for each column. The first cell names the row.
-    caption : str
-        Text below the table: units, seeds, intervals.
-    marks : mapping of str to str
-        HTML class of the cells with a given text.
+    Names of columns in `header` may contain line breaks. `caption` is the text below: units, seeds,
+    intervals. `marks` maps the text of a cell to its HTML class.
     """
 
     header: list[str]

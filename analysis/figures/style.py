@@ -21,7 +21,7 @@ from matplotlib.figure import Figure
 from kswarms.analysis.colours import swarm_colour
 from kswarms.analysis.measures.quantities import Curve
 from kswarms.analysis.statistics.intervals import fewest_seeds
-from kswarms.analysis.statistics.means import mean_by_n
+from kswarms.analysis.statistics.means import with_intervals
 from kswarms.analysis.text_tables import span
 
 CONDITION_COLOURS: Final = tuple(sns.color_palette("colorblind").as_hex())
@@ -81,7 +81,7 @@ def draw_curves(axes: Axes, curves: Sequence[Curve], quantity: str, detail: bool
         # Curves are shifted, so that the seeds of one do not hide those of another.
         shift = gap * 0.5 * ((index + 0.5) / len(curves) - 0.5)
         seeds = rows["seed"].nunique()
-        points = mean_by_n(rows, quantity, by=())
+        points = with_intervals(rows, ["n"], quantity)
         if seeds > 1 and detail:
             # Many seeds share a value: the more seeds, the lighter the points.
             alpha = min(0.25, max(0.05, 5 / seeds))

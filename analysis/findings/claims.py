@@ -59,10 +59,9 @@ class Compare(_OverDensities):
 
     @model_validator(mode="after")
     def _check_units(self) -> Self:
-        if isinstance(self.right, Quantity) and self.right.unit != self.left.unit:
-            raise InputError(
-                "right.measure", self.right.measure, f"must be in {self.left.unit}, as the left is"
-            )
+        unit = self.left.unit
+        if isinstance(self.right, Quantity) and self.right.unit != unit:
+            raise InputError("right.measure", self.right.measure, f"must be in {unit}, as the left is")
         return self
 
 
@@ -86,10 +85,9 @@ class Overtake(_OverDensities):
     def _check(self) -> Self:
         if self.between[0] >= self.between[1]:
             raise InputError("between", list(self.between), "must ascend")
-        if self.ahead.unit != self.behind.unit:
-            raise InputError(
-                "behind.measure", self.behind.measure, f"must be in {self.ahead.unit}, as ahead is"
-            )
+        unit = self.ahead.unit
+        if self.behind.unit != unit:
+            raise InputError("behind.measure", self.behind.measure, f"must be in {unit}, as ahead is")
         return self
 
 
@@ -117,10 +115,9 @@ class Share(_OverDensities):
 
     @model_validator(mode="after")
     def _check_measure(self) -> Self:
-        if self.quantity.measure not in LEARNED:
-            raise InputError(
-                "quantity.measure", self.quantity.measure, f"must be one of {', '.join(LEARNED)}"
-            )
+        measure = self.quantity.measure
+        if measure not in LEARNED:
+            raise InputError("quantity.measure", measure, f"must be one of {', '.join(LEARNED)}")
         return self
 
 

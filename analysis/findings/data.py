@@ -60,9 +60,8 @@ def sample(results: Results, quantity: Quantity) -> pd.DataFrame:
     NaN where a density was not played with a seed; empty without any value. It is an error if a game has
     several values: rows occur twice, or there are several opponents and none is given.
     """
-    return _by_seed(
-        _learned(results, quantity) if quantity.measure in LEARNED else _measured(results, quantity)
-    )
+    values = _learned if quantity.measure in LEARNED else _measured
+    return _by_seed(values(results, quantity))
 
 
 def sizes(results: Results, quantity: Quantity) -> pd.DataFrame:

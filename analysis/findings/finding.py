@@ -17,10 +17,8 @@ class Finding(Checked):
 
     Attributes
     ----------
-    id : str
-        Short name.
-    statement : str
-        A sentence.
+    id, statement : str
+        Short name, and a sentence.
     source : str
         Section and figure that state it.
     claim : Claim

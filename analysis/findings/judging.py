@@ -17,14 +17,7 @@ from kswarms.analysis.results.runs import Results
 
 
 def judge(finding: Finding, results: Results) -> Verdict:
-    """Judge a finding by results.
-
-    Parameters
-    ----------
-    finding : Finding
-        One of `kswarms.analysis.findings.FINDINGS`, or a user-defined one.
-    results : Results
-        As `kswarms.analysis.results.runs.read_results` returns them.
+    """Judge a finding, one of `FINDINGS` or a user-defined one, by results of `read_results`.
 
     Raises
     ------

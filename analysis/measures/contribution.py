@@ -29,6 +29,7 @@ MEASURES: Final = {"pucks": "pucks", "time": "s"}
 QUANTITIES: Final = (*MEASURES, "reward", "reward_rate")
 """Quantities of a robot: contributions, reward in a game (s), reward per second."""
 OTHERS: Final = ("mates", "opponents")
+_TIMES: Final = ("t_a", "t_a_without", "t_p", "t_p_without")
 
 
 def time_sud(conflicts: Mapping[str, Sequence[Any]], swarms: int) -> list[float]:
@@ -61,11 +62,6 @@ def of_question(rows: pd.DataFrame, **question: object) -> pd.DataFrame:
     pandas.DataFrame
         The columns of `rows`; `pucks` and `time` (s), the contributions to SUD; `reward_rate`, the reward per
         second of conflicts and following program time (Eq. 4.15), NaN without conflicts.
-
-    Raises
-    ------
-    InputError
-        A value does not occur, or one of several must be given.
     """
     for name, value in question.items():
         if value not in set(rows[name]):
@@ -91,12 +87,9 @@ def measures_of(rows: pd.DataFrame) -> list[str]:
 def mean_contributions(rows: pd.DataFrame) -> pd.DataFrame:
     """Return means of rows of `of_question` over the seeds, for each robot and for the mean robot of a swarm.
 
-    Returns
-    -------
-    pandas.DataFrame
-        One row for each `swarm` and `robot`, then one row with robot −1 for the mean robot of each swarm;
-        `seeds`; and for each of `QUANTITIES` its mean, under its own name, with its 95 % interval, ``…_low``
-        and ``…_high``, NaN for fewer than six seeds.
+    There is one row for each `swarm` and `robot`, then one row with robot −1 for the mean robot of each
+    swarm: `seeds`; and for each of `QUANTITIES` its mean, under its own name, with its 95 % interval,
+    ``…_low`` and ``…_high``, NaN for fewer than six seeds.
     """
     key = ["swarm", "robot"]
     mean_robot = rows.groupby(["swarm", "seed"])[list(QUANTITIES)].mean().reset_index().assign(robot=-1)
@@ -116,12 +109,9 @@ def rank_correlations(rows: pd.DataFrame) -> pd.DataFrame:
     -------
     pandas.DataFrame
         One row for each `swarm` of at least three robots and each `measure`, with Spearman's ρ and its 95 %
-        interval:
-
-        * ``robots``, ``…_low``, ``…_high``: of the robots' means over the seeds;
-        * ``games``, ``…_low``, ``…_high``: of the robots in one game, averaged over the games.
-
-        NaN if all robots have the same value; the bounds are NaN for fewer than six seeds.
+        interval: of the robots' means over the seeds (``robots``, ``…_low``, ``…_high``), and of the robots
+        in one game, averaged over the games (``games``, ``…_low``, ``…_high``). NaN if all robots have the
+        same value; the bounds are NaN for fewer than six seeds.
     """
     table = []
     for swarm, of_swarm in rows.groupby("swarm"):
@@ -133,7 +123,8 @@ def rank_correlations(rows: pd.DataFrame) -> pd.DataFrame:
             of_means = bootstrap_interval(
                 both, lambda means: spearman(means[..., 0], means[..., 1]), smooth=False
             )
-            of_games = _mean_interval(in_games[~np.isnan(in_games)])
+            in_games = in_games[~np.isnan(in_games)]
+            of_games = bootstrap_interval(in_games) if len(in_games) else Interval(np.nan, np.nan, np.nan)
             table.append((swarm, measure, *_finite(of_means), *_finite(of_games)))
     columns = ("robots", "robots_low", "robots_high", "games", "games_low", "games_high")
     return pd.DataFrame(table, columns=["swarm", "measure", *columns])
@@ -156,19 +147,14 @@ def assumption(rows: pd.DataFrame) -> pd.DataFrame:
         * `share`, `share_low`, `share_high`: (T(a) − T(a) without) / met with its 95 % interval: 1 if the
           assumption holds, 0 if other conflicts replace these; NaN if no robot met it.
     """
-    scale = rows["duration"] / rows["duration_without"]
     table = []
     for swarm, of_swarm in rows.groupby("swarm"):
+        scale = of_swarm["duration"] / of_swarm["duration_without"]
         for others in OTHERS:
-            times = pd.DataFrame(
-                {
-                    "t_a": of_swarm[f"{others}_t_a"],
-                    "t_a_without": of_swarm[f"{others}_t_a_without"] * scale,
-                    "t_p": of_swarm[f"{others}_t_p"],
-                    "t_p_without": of_swarm[f"{others}_t_p_without"] * scale,
-                    "met": of_swarm[f"{others}_t_a_met"],
-                }
-            )
+            times = of_swarm[[f"{others}_{name}" for name in (*_TIMES, "t_a_met")]]
+            times = times.set_axis([*_TIMES, "met"], axis=1)
+            without = ["t_a_without", "t_p_without"]
+            times[without] = times[without].mul(scale, axis=0)
             if (times["t_a"] + times["t_p"] == 0).all():
                 continue  # there are no such robots
             of_seeds = times.groupby(of_swarm["seed"]).mean().to_numpy()
@@ -189,10 +175,6 @@ def _by_seed(rows: pd.DataFrame, quantity: str) -> Floats:
     """Return a quantity as an array of shape (seeds, robots)."""
     table: Floats = rows.pivot(index="seed", columns="robot", values=quantity).to_numpy()
     return table
-
-
-def _mean_interval(values: Floats) -> Interval:
-    return bootstrap_interval(values) if len(values) else Interval(np.nan, np.nan, np.nan)
 
 
 def _finite(interval: Interval) -> tuple[float, float, float]:

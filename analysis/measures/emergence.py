@@ -28,21 +28,12 @@ def learning_conflicts(conflicts: pd.DataFrame) -> pd.DataFrame:
 
 
 def choices(conflicts: pd.DataFrame, by: Sequence[str] = ()) -> pd.DataFrame:
-    """Return the share of each action among the choices of learners, over the learning time.
+    """Return the share of each action among the choices of learners in one game, over the learning time.
 
-    Parameters
-    ----------
-    conflicts : pandas.DataFrame
-        Conflicts of one game; `InputError` if no swarm learned.
-    by : sequence of str
-        Further columns to group by: ``robot``, or none.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row for each `swarm`, `opponent_swarm` (int64), column of `by`, `time` (float64, s: middle of one
-        of `BINS` intervals) and `action` (str), with `share` (float64) of the conflicts in that interval. An
-        interval without conflicts has no row.
+    `by` are further columns to group by: ``robot``, or none. There is one row for each `swarm`,
+    `opponent_swarm` (int64), column of `by`, `time` (float64, s: middle of one of `BINS` intervals) and
+    `action` (str), with `share` (float64) of the conflicts in that interval. An interval without conflicts
+    has no row. `InputError` if no swarm learned.
     """
     rows = learning_conflicts(conflicts)
     rows = rows.assign(time=_middles(rows["start"]))
@@ -55,12 +46,9 @@ def choices(conflicts: pd.DataFrame, by: Sequence[str] = ()) -> pd.DataFrame:
 def arm_values(conflicts: pd.DataFrame) -> pd.DataFrame:
     """Return Q of each learner's arms over the learning time (Eq. 4.15); `InputError` if no swarm learned.
 
-    Returns
-    -------
-    pandas.DataFrame
-        One row for each `swarm`, `opponent_swarm`, `robot` (int64), `action` (str) and `time` (float64, s:
-        middle of one of `BINS` intervals), with `q` (float64, reward per second): the latest value. An arm
-        has no row before its first trial.
+    There is one row for each `swarm`, `opponent_swarm`, `robot` (int64), `action` (str) and `time` (float64,
+    s: middle of one of `BINS` intervals), with `q` (float64, reward per second): the latest value. An arm has
+    no row before its first trial.
     """
     rows = learning_conflicts(conflicts).dropna(subset="q").sort_values("start")
     rows = rows.assign(time=_middles(rows["start"]))
@@ -77,19 +65,11 @@ def _middles(start: pd.Series) -> np.ndarray:
 
 
 def preferences(robots: pd.DataFrame) -> pd.DataFrame:
-    """Return the arms of each learner at the end, from rows of `robots.parquet` of one or more games.
+    """Return the arms of each learner at the end, from `robots.parquet`; `InputError` if no robot learned.
 
-    Returns
-    -------
-    pandas.DataFrame
-        One row for each `run` (if `robots` has it), `swarm`, `opponent_swarm`, `robot` (int64) and tried
-        `action` (str), with `q` (float64, reward per second) and `learned` (bool): whether it is the robot's
-        best.
-
-    Raises
-    ------
-    InputError
-        No robot learned.
+    There is one row for each `run` (if `robots` has it), `swarm`, `opponent_swarm`, `robot` (int64) and tried
+    `action` (str), with `q` (float64, reward per second) and `learned` (bool): whether it is the robot's
+    best.
     """
     keys = [name for name in ("run", "swarm", "robot") if name in robots]
     arms = robots[[*keys, "arms"]].explode("arms").dropna(subset="arms").reset_index(drop=True)

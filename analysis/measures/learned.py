@@ -48,10 +48,8 @@ def learned_shares(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataF
     cells = with_intervals(rows, [*_CELL, "learned"], "percent").rename(columns={"mean": "measured"})
     cells = cells.merge(learned_percentages(), how="left", on=["scenario", "learned", "n"])
     cells["error"] = cells["measured"] - cells["published"]
-    order = {scenario: index for index, scenario in enumerate(scenarios)}
-    cells = cells.sort_values(
-        _CELL, key=lambda values: values.map(order) if values.name == "scenario" else values
-    ).reset_index(drop=True)
+    cells["order"] = cells["scenario"].map(list(scenarios).index)
+    cells = cells.sort_values(["order", *_CELL], ignore_index=True)
     return cells[[*_CELL, "learned", "seeds", "measured", "low", "high", "published", "error"]]
 
 

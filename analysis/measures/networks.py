@@ -17,7 +17,7 @@ SMALLEST_JAM = 3
 
 
 def meeting_network(conflicts: pd.DataFrame) -> nx.Graph:
-    """Return the network of robots that met.
+    """Return the network of robots that met; `InputError` if `conflicts` are of several games.
 
     Returns
     -------
@@ -25,11 +25,6 @@ def meeting_network(conflicts: pd.DataFrame) -> nx.Graph:
         A node for each robot that began a conflict or was met in one, with its `swarm` (int, from 1); an edge
         for each pair that met, with `meetings` (int): conflicts between them, begun by either; `time` (float,
         robot-seconds): T(a) of these conflicts; and `kind` (str): ``intra`` or ``inter``.
-
-    Raises
-    ------
-    InputError
-        `conflicts` are of several games.
     """
     if "run" in conflicts and conflicts["run"].nunique() > 1:
         raise InputError("conflicts", f"{conflicts['run'].nunique()} runs", "must be of one game")
@@ -40,11 +35,7 @@ def meeting_network(conflicts: pd.DataFrame) -> nx.Graph:
     for robot, swarm in sorted(swarms.items()):
         network.add_node(robot, swarm=swarm)
     pairs = np.sort(conflicts[["robot", "opponent"]].to_numpy(), axis=1)
-    met = (
-        pd.DataFrame({"first": pairs[:, 0], "second": pairs[:, 1], "t_a": conflicts["t_a"].to_numpy()})
-        .groupby(["first", "second"])["t_a"]
-        .agg(["size", "sum"])
-    )
+    met = conflicts["t_a"].groupby([pairs[:, 0], pairs[:, 1]]).agg(["size", "sum"])
     for (first, second), (meetings, time) in zip(met.index, met.to_numpy(), strict=True):
         kind = "intra" if swarms[first] == swarms[second] else "inter"
         network.add_edge(int(first), int(second), meetings=int(meetings), time=float(time), kind=kind)
@@ -54,14 +45,11 @@ def meeting_network(conflicts: pd.DataFrame) -> nx.Graph:
 def describe_network(network: nx.Graph) -> dict[str, float]:
     """Return numbers that describe a network of meetings with at least one edge.
 
-    Returns
-    -------
-    dict of str to float
-        * `robots`, `pairs` that met, `met`: share of all pairs that met, `meetings`;
-        * `time`: robot-seconds in conflict, `inter`: share of that time between swarms;
-        * `degree`: mean number of robots that a robot met, `strength`: mean time of a robot in meetings (s);
-        * `assortativity` of pairs by swarm-ID, `assortativity_time`: pairs weighted by time; `chance`: both
-          if every robot met every other one equally, which is below 0 because no robot meets itself.
+    * `robots`, `pairs` that met, `met`: share of all pairs that met, `meetings`;
+    * `time`: robot-seconds in conflict, `inter`: share of that time between swarms;
+    * `degree`: mean number of robots that a robot met, `strength`: mean time of a robot in meetings (s);
+    * `assortativity` of pairs by swarm-ID, `assortativity_time`: pairs weighted by time; `chance`: both if
+      every robot met every other one equally, which is below 0 because no robot meets itself.
     """
     swarms = sorted(set(nx.get_node_attributes(network, "swarm").values()))
     sizes = np.array([sum(s == swarm for _, s in network.nodes(data="swarm")) for swarm in swarms], float)
@@ -86,17 +74,14 @@ def describe_network(network: nx.Graph) -> dict[str, float]:
 def mixing_matrix(network: nx.Graph, weight: str | None) -> np.ndarray:
     """Return the sums of a weight, ``time`` or ``meetings``, between each two swarms; None counts pairs.
 
-    Returns
-    -------
-    ndarray of float64, shape (K, K)
-        Symmetric; row and column k are the k-th swarm. Each pair counts once from each side, so a row sums to
-        the meetings of its robots with all swarms.
+    The matrix is symmetric, float64, shape (K, K). Each pair counts once from each side, so a row sums to the
+    meetings of its robots with all swarms.
     """
     swarm = nx.get_node_attributes(network, "swarm")
     index = {name: k for k, name in enumerate(sorted(set(swarm.values())))}
     matrix = np.zeros((len(index), len(index)))
-    for first, second, value in network.edges(data=weight) if weight else network.edges(data="kind"):
-        amount = value if weight else 1
+    for first, second, data in network.edges(data=True):
+        amount = data[weight] if weight else 1
         matrix[index[swarm[first]], index[swarm[second]]] += amount
         matrix[index[swarm[second]], index[swarm[first]]] += amount
     return matrix
@@ -118,11 +103,6 @@ def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:
         One row for each moment from the first start to the last end of a conflict: `time` (float64, s),
         `jams` (int64): connected components of at least `SMALLEST_JAM` robots, `jammed` (int64): robots in
         these, `largest` (int64): robots in the largest component, 0 without any conflict.
-
-    Raises
-    ------
-    InputError
-        `every` is not above 0, or there is no conflict.
     """
     if every <= 0:
         raise InputError("every", every, "must be above 0")
@@ -136,9 +116,7 @@ def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:
     origin, moments = first.min(), last.max() - first.min()
     lengths = last - first
     edge = np.repeat(np.arange(len(conflicts)), lengths)
-    moment = (
-        np.arange(lengths.sum()) - np.repeat(np.cumsum(lengths) - lengths, lengths) + first[edge] - origin
-    )
+    moment = np.arange(lengths.sum()) + np.repeat(first - origin - np.cumsum(lengths) + lengths, lengths)
     robots = int(conflicts[["robot", "opponent"]].to_numpy().max()) + 1
     # A node is a (moment, robot). No edge joins two moments, so one call finds the components of all moments.
     a = moment * robots + conflicts["robot"].to_numpy()[edge]
@@ -151,12 +129,7 @@ def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:
     at[component] = np.arange(nodes) // robots
     groups = pd.DataFrame({"at": at, "size": size})[size > 1]
     jammed = groups[groups["size"] >= SMALLEST_JAM].groupby("at")["size"].agg(["size", "sum"])
-    index = pd.RangeIndex(moments)
-    return pd.DataFrame(
-        {
-            "time": (origin + np.arange(moments)) * every,
-            "jams": jammed["size"].reindex(index, fill_value=0),
-            "jammed": jammed["sum"].reindex(index, fill_value=0),
-            "largest": groups.groupby("at")["size"].max().reindex(index, fill_value=0),
-        }
-    )
+    columns = {"jams": jammed["size"], "jammed": jammed["sum"], "largest": groups.groupby("at")["size"].max()}
+    over_time = pd.DataFrame(columns, index=range(moments)).fillna(0).astype(np.int64)
+    over_time.insert(0, "time", (origin + np.arange(moments)) * every)
+    return over_time

@@ -20,18 +20,10 @@ _OF_TIME: Final = {"fig-6.3"}
 
 @dataclass(frozen=True)
 class Curve:
-    """One curve of a scenario.
+    """One curve of a scenario: its name in legends and tables, and its rows of `runs.parquet`.
 
-    Attributes
-    ----------
-    label : str
-        Name in legends and tables.
-    rows : pandas.DataFrame
-        Rows of `runs.parquet`.
-    condition : int or None
-        Index of the condition; None if the scenario has only one.
-    swarm : int or None
-        Number of the swarm; None if only conditions differ.
+    `condition` is the index of the condition, None if the scenario has only one. `swarm` is the number of the
+    swarm, None if only conditions differ.
     """
 
     label: str
@@ -41,13 +33,7 @@ class Curve:
 
 
 def of_scenario(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
-    """Return the rows of a scenario.
-
-    Raises
-    ------
-    InputError
-        `runs` has none.
-    """
+    """Return the rows of a scenario; `InputError` if `runs` has none."""
     rows = runs[runs["scenario"] == scenario]
     if rows.empty:
         raise InputError("scenario", scenario, f"must be one of {', '.join(sorted(set(runs['scenario'])))}")

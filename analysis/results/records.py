@@ -17,16 +17,10 @@ def recorded_runs(directory: Path, table: str) -> set[str]:
 
 
 def read_conflicts(directory: Path, runs: Collection[str] | None = None, seen: bool = False) -> pd.DataFrame:
-    """Read `conflicts.parquet`: one row for each conflict that a robot began; see `read_table`.
+    """Read the table of ``kswarms run --record conflicts --out``: a row for each conflict that a robot began.
 
-    Parameters
-    ----------
-    directory : Path
-        Directory that `kswarms run --record conflicts --out` wrote.
-    runs : collection of str, optional
-        Runs to read; by default all.
-    seen : bool
-        Whether to read the column `seen` (robots that the sensors read), the bulk of the file.
+    `runs` are the runs to read, by default all. `seen` also reads the column of that name, the robots that
+    the sensors read: the bulk of the file. Errors are those of `read_table`.
     """
     columns = [name for name in names("conflicts") if seen or name != "seen"]
     return read_table(directory, "conflicts", columns, runs)

@@ -18,9 +18,9 @@ class Results:
     Attributes
     ----------
     runs : pandas.DataFrame
-        As `read_runs` returns them.
-    policies : pandas.DataFrame or None
-        As `read_policies` returns them; None if no swarm learned.
+        Table of `read_runs`.
+    policies : pandas.DataFrame, optional
+        Table of `read_policies`; None if no swarm learned.
     """
 
     runs: pd.DataFrame

@@ -22,21 +22,8 @@ def read_table(
 ) -> pd.DataFrame:
     """Read a table of a results directory and check it against the schema.
 
-    Parameters
-    ----------
-    directory : Path
-        Results directory.
-    table : str
-        Name of the table: a key of `kswarms.agents.common.columns.TABLES`.
-    columns : sequence of str, optional
-        Columns to read; by default all columns of the file, including columns beyond the schema.
-    runs : collection of str, optional
-        Runs to read; by default all.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Columns of the schema have its kinds: text is str, numbers are numeric and complete.
+    By default all runs and all columns of the file are read, including columns beyond the schema. Columns of
+    the schema have its kinds: text is str, numbers are numeric and complete.
 
     Raises
     ------

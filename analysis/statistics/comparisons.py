@@ -107,13 +107,8 @@ def adjust_p_values(
 ) -> list[float]:
     """Return p-values corrected for multiple tests, in the same order.
 
-    Parameters
-    ----------
-    p_values : sequence of float
-        P-values of all tests that were made, significant or not.
-    method : str
-        ``holm`` controls the probability of any false finding, ``benjamini-hochberg`` the expected share of
-        false findings.
+    `p_values` are those of all tests that were made, significant or not. ``holm`` controls the probability of
+    any false finding, ``benjamini-hochberg`` the expected share of false findings.
     """
     names = {"holm": "holm", "benjamini-hochberg": "fdr_bh"}
     if method not in names:
@@ -130,19 +125,9 @@ def adjust_p_values(
 def more_seeds(differences: ArrayLike, power: float = 0.8, confidence: float = CONFIDENCE) -> int | None:
     """Return how many additional seeds a test needs to tell the mean difference from 0.
 
-    Parameters
-    ----------
-    differences : array_like
-        Shape (seeds,). Their mean and standard deviation are taken as the true ones.
-    power : float
-        Probability that the test rejects a mean of 0, 0 … 1.
-    confidence : float
-        Level of the two-sided test (Student's t, statsmodels' `TTestPower`).
-
-    Returns
-    -------
-    int or None
-        0 if there are enough; None if a million seeds are too few.
+    The test is Student's, two-sided, at the level `confidence`. Its `power`, 0 … 1, is the probability that
+    it rejects a mean of 0. Mean and standard deviation of `differences`, shape (seeds,), are taken as the
+    true ones. The result is 0 if there are enough seeds, and None if a million are too few.
     """
     values = np.asarray(differences, dtype=np.float64)
     seeds = check_seeds(values, 2)

@@ -36,11 +36,8 @@ class Overtaking:
 def crossings(densities: ArrayLike, differences: ArrayLike) -> tuple[float, ...]:
     """Return where a curve changes sign, in ascending order.
 
-    Parameters
-    ----------
-    densities, differences : array_like
-        Shape (densities,): N, ascending, and the value there, linear in between. A stretch of zeros between
-        different signs is one crossing in its middle; a stretch between equal signs is none.
+    Both arguments have the shape (densities,): N, ascending, and the value there, linear in between. A
+    stretch of zeros between different signs is one crossing in its middle; one between equal signs is none.
     """
     n, values = _curve(densities, differences)
     (nonzero,) = np.nonzero(values)
@@ -60,22 +57,9 @@ def overtaking(
 ) -> Overtaking:
     """Return where one curve overtakes another, with an interval over the seeds.
 
-    Noise makes similar curves cross often, so the interval is of the last crossing, after which the first
-    curve stays ahead. Every resample has one if ±inf counts, so no resample is left out.
-
-    Parameters
-    ----------
-    densities : sequence of int
-        N, ascending.
-    differences : array_like
-        Shape (seeds, densities): first curve − second curve.
-    confidence : float
-        Level of the interval.
-
-    Raises
-    ------
-    InputError
-        There are fewer than two densities, no seeds, or the shapes do not match.
+    `differences`, shape (seeds, densities), are first curve − second curve at two or more ascending
+    `densities`. Noise makes similar curves cross often, so the interval is of the last crossing, after which
+    the first curve stays ahead. Every resample has one if ±inf counts, so no resample is left out.
     """
     n, values = _samples(densities, differences)
     last = bootstrap_interval(values, lambda means: _last_rise(n, means), confidence)
@@ -87,7 +71,7 @@ def rank_correlation_with_n(
 ) -> Interval:
     """Return Spearman's rank correlation of a mean curve with N, 0 for a constant curve, with its interval.
 
-    Parameters and errors are those of `overtaking`; `samples` are the values of the curve.
+    `samples`, shape (seeds, densities), are the values of the curve.
     """
     n, values = _samples(densities, samples)
     return bootstrap_interval(

@@ -36,14 +36,9 @@ class Interval:
     high: float
 
 
-def mean_itself(means: Values) -> Values:
-    """Return the means: the default statistic."""
-    return means
-
-
 def bootstrap_interval(
     samples: ArrayLike,
-    statistic: Statistic = mean_itself,
+    statistic: Statistic = lambda means: means,
     confidence: float = CONFIDENCE,
     smooth: bool = True,
 ) -> Interval:
@@ -53,10 +48,12 @@ def bootstrap_interval(
     few seeds are too narrow, so the level is raised to 2 Φ(√(n / (n − 1)) t) − 1, where t is the quantile of
     Student's distribution with n − 1 degrees of freedom (Hesterberg 2015, "expanded percentile").
 
+    Identical seeds give an interval of width 0. With fewer seeds than `fewest_seeds`, the bounds are ±inf.
+
     Parameters
     ----------
-    samples : array_like
-        Shape (seeds, …). All values of a seed are resampled together.
+    samples : array_like of float
+        Shape (seeds, …), at least one seed. All values of a seed are resampled together.
     statistic : callable
         Maps means of shape (resamples, …) to values of shape (resamples,); the default is the mean itself.
     confidence : float
@@ -64,17 +61,6 @@ def bootstrap_interval(
     smooth : bool
         False for a statistic of ranks. BCa is not valid for it: where all ranks are chance, intervals of 95 %
         for a rank correlation excluded 0 in a fifth of all samples. Its bounds are percentiles.
-
-    Returns
-    -------
-    Interval
-        Identical seeds give an interval of width 0. With fewer seeds than `fewest_seeds`, the bounds are −inf
-        and inf.
-
-    Raises
-    ------
-    InputError
-        If there is no seed, or the confidence is not between 0 and 1.
     """
     values = np.asarray(samples, dtype=np.float64)
     seeds = check_seeds(values, 1)

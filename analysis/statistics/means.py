@@ -8,36 +8,13 @@ import pandas as pd
 from kswarms.analysis.statistics.intervals import fewest_seeds, intervals_of_means
 from kswarms.analysis.text_tables import span
 
-CURVE = ("condition", "swarm")
-"""Columns that identify a curve of a scenario."""
-
-
-def mean_by_n(rows: pd.DataFrame, quantity: str, by: Sequence[str] = CURVE) -> pd.DataFrame:
-    """Return the mean of a quantity at each density of each curve.
-
-    `rows` has one row for each seed; the columns `by` identify a curve. The result is that of
-    `with_intervals` for the groups of `by` and ``n``.
-    """
-    return with_intervals(rows, [*by, "n"], quantity)
-
 
 def with_intervals(rows: pd.DataFrame, key: Sequence[str], quantity: str) -> pd.DataFrame:
     """Return the mean of a column in each group of rows, with its 95 % interval.
 
-    Parameters
-    ----------
-    rows : pandas.DataFrame
-        One row for each seed of a group.
-    key : sequence of str
-        Columns that identify a group.
-    quantity : str
-        Column to average; missing values are left out.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row for each group, sorted: `key`, ``seeds`` (int64), ``mean``, ``low``, ``high`` (float64). The
-        bounds are NaN for fewer than six seeds. The order of `rows` does not matter.
+    `rows` has one row for each seed of a group, in any order; the columns `key` identify a group. Missing
+    values are left out. The result has one row for each group, sorted: `key`, ``seeds`` (int64), ``mean``,
+    ``low``, ``high`` (float64). The bounds are NaN for fewer than six seeds.
     """
     # Sorted by value too, because resamples depend on the order of the seeds.
     ordered = rows.sort_values([*key, quantity])

@@ -5,13 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from kswarms.analysis.measures.contribution import (
-    MEASURES,
-    QUANTITIES,
-    assumption,
-    mean_contributions,
-    rank_correlations,
-)
+from kswarms.analysis.measures import contribution
 from kswarms.analysis.statistics.means import describe_seeds
 from kswarms.analysis.text_tables import with_interval
 
@@ -23,16 +17,16 @@ def contribution_tables(rows: pd.DataFrame) -> list[tuple[str, list[list[str]]]]
     """
     seeds = rows["seed"].nunique()
     by_robot = [["robot", "swarm", "SUD (pucks)", "SUD (s)", "reward (s)", "reward per second"]]
-    for found in mean_contributions(rows).to_dict("records"):
+    for found in contribution.mean_contributions(rows).to_dict("records"):
         robot = f"mean of S{found['swarm']}" if found["robot"] < 0 else str(found["robot"])
-        forms = zip(QUANTITIES, (".2f", ".1f", ".1f", ".3f"), strict=True)
+        forms = zip(contribution.QUANTITIES, (".2f", ".1f", ".1f", ".3f"), strict=True)
         by_robot.append([robot, f"S{found['swarm']}", *(estimate_text(found, *each) for each in forms)])
     ranks = [["swarm", "contribution to SUD in", "of robots' means", "within a game"]]
-    for found in rank_correlations(rows).to_dict("records"):
+    for found in contribution.rank_correlations(rows).to_dict("records"):
         cells = (estimate_text(found, name) for name in ("robots", "games"))
-        ranks.append([f"S{found['swarm']}", MEASURES[found["measure"]], *cells])
+        ranks.append([f"S{found['swarm']}", contribution.MEASURES[found["measure"]], *cells])
     freed = [["robot of", "others", "T(a)", "without", "T(p)", "without", "T(a) against it", "share freed"]]
-    for found in assumption(rows).to_dict("records"):
+    for found in contribution.assumption(rows).to_dict("records"):
         times = (f"{found[name]:.1f}" for name in ("t_a", "t_a_without", "t_p", "t_p_without", "met"))
         freed.append([f"S{found['swarm']}", found["others"], *times, estimate_text(found, "share")])
     return [

@@ -35,9 +35,8 @@ def against_argos(runs: pd.DataFrame) -> pd.DataFrame:
         One row for each common `scenario` (str), `n`, `swarm` (int64), sorted by these, with
 
         * `seeds_ours`, `seeds_theirs` (int64): numbers of games;
-        * `score_ours`, `score_theirs`, `score_difference` (float64, pucks): means, and ours − theirs;
-        * `score_low`, `score_high` (float64, pucks): 95 % Welch interval of the difference, NaN for a single
-          game on either side;
+        * `score_ours`, `score_theirs`, `score_difference` (float64, pucks): means, and ours − theirs, with
+          the 95 % Welch interval `score_low`, `score_high`, NaN for a single game on either side;
         * `score_relative` (float64): difference / theirs, NaN if theirs is 0;
         * `share_ours`, `share_theirs`, `share_difference` (float64): mean shares of time in conflict;
         * `score_fits`, `share_fits` (bool): whether they agree.
@@ -110,18 +109,12 @@ def _own_games(runs: pd.DataFrame) -> pd.DataFrame:
 def _argos_games() -> pd.DataFrame:
     """Return the ARGoS games in the form of `_own_games`: one row for each game and swarm."""
     games = argos_fixed_policies()
+    scenario = "argos-" + games["s1_policy"] + "-" + games["s2_policy"]
     swarms = []
     for swarm in (1, 2):
         in_conflict = games[f"ta_intra{swarm}"] + games[f"ta_inter{swarm}"]
+        share = share_of_time(in_conflict, in_conflict, games[f"tp{swarm}"])
         swarms.append(
-            pd.DataFrame(
-                {
-                    "scenario": "argos-" + games["s1_policy"] + "-" + games["s2_policy"],
-                    "n": games["n"],
-                    "swarm": swarm,
-                    "score": games[f"score{swarm}"],
-                    "share": share_of_time(in_conflict, in_conflict, games[f"tp{swarm}"]),
-                }
-            )
+            games[["n"]].assign(scenario=scenario, swarm=swarm, score=games[f"score{swarm}"], share=share)
         )
     return pd.concat(swarms)

@@ -9,7 +9,7 @@ from kswarms.analysis.measures.quantities import (
     split_curves,
     with_time_shares,
 )
-from kswarms.analysis.statistics.means import describe_seeds, mean_by_n
+from kswarms.analysis.statistics.means import describe_seeds, with_intervals
 from kswarms.analysis.text_tables import TextTable, with_interval
 
 _UNITS = {"pucks": "pucks deposited by the swarm", "sud": "SUD of S2 (pucks)"}
@@ -18,12 +18,8 @@ _UNITS = {"pucks": "pucks deposited by the swarm", "sud": "SUD of S2 (pucks)"}
 def scores(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
     """Return the numbers behind the figure of a scenario (`kswarms.analysis.figures.over_n.figure_of`).
 
-    Returns
-    -------
-    pandas.DataFrame
-        One row for each `quantity` (str: ``pucks``, ``sud`` or a kind of time share), `curve` (str: name in
-        the legend) and `n` (int64), with `seeds` (int64), `mean`, `low`, `high` (float64): the mean over the
-        seeds and its 95 % interval, NaN for fewer than six seeds.
+    There is one row for each `quantity` (str: ``pucks``, ``sud`` or a kind of time share), `curve` (str: name
+    in the legend) and `n`, with `seeds`, `mean`, `low` and `high` as in `with_intervals`.
     """
     rows = of_scenario(runs, scenario)
     shown = quantities(scenario)
@@ -32,7 +28,7 @@ def scores(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
     elif shown == TIME_SHARES:
         rows = with_time_shares(rows)
     parts = [
-        mean_by_n(curve.rows, quantity, by=()).assign(quantity=quantity, curve=curve.label)
+        with_intervals(curve.rows, ["n"], quantity).assign(quantity=quantity, curve=curve.label)
         for quantity in shown
         for curve in split_curves(rows)
     ]

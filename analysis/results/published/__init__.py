@@ -17,11 +17,8 @@ def _table(name: str) -> pd.DataFrame:
 def table_6_1() -> pd.DataFrame:
     """Table 6.1: robots that learned to attack the other swarm, for each density.
 
-    Returns
-    -------
-    pandas.DataFrame
-        Ten rows. `n` (int64): robots in all; `fig_6_4a_attack_pct`, `fig_6_4b_attack_pct` (float64): percent
-        of the learning swarm's robots, against an avoiding (6.4a) and an attacking (6.4b) swarm.
+    Ten rows. `n` (int64): robots in all; `fig_6_4a_attack_pct`, `fig_6_4b_attack_pct` (float64): percent of
+    the learning swarm's robots, against an avoiding (6.4a) and an attacking (6.4b) swarm.
     """
     return _table("table-6.1.csv")
 
@@ -29,11 +26,8 @@ def table_6_1() -> pd.DataFrame:
 def table_6_2() -> pd.DataFrame:
     """Table 6.2: robots that learned with both bandits (Fig. 6.8), for each density.
 
-    Returns
-    -------
-    pandas.DataFrame
-        Ten rows. `n` (int64): robots in all; `inter_attack_pct`, `intra_avoid_pct` (float64): percent of the
-        learning swarm's robots that learned to fight the other swarm, and to flee within their own.
+    Ten rows. `n` (int64): robots in all; `inter_attack_pct`, `intra_avoid_pct` (float64): percent of the
+    learning swarm's robots that learned to fight the other swarm, and to flee within their own.
     """
     return _table("table-6.2.csv")
 
@@ -41,12 +35,9 @@ def table_6_2() -> pd.DataFrame:
 def learned_percentages() -> pd.DataFrame:
     """Tables 6.1 and 6.2 in one form: percentages of the learning swarm.
 
-    Returns
-    -------
-    pandas.DataFrame
-        Forty rows. `scenario` (str): figure of the table; `learned` (str): ``attack`` (the other swarm) or
-        ``flight within`` (the own swarm); `n` (int64): robots in all; `published` (float64): percent of the
-        learning swarm's robots.
+    Forty rows. `scenario` (str): figure of the table; `learned` (str): ``attack`` (the other swarm) or
+    ``flight within`` (the own swarm); `n` (int64): robots in all; `published` (float64): percent of the
+    learning swarm's robots.
     """
     attack, within = "attack", "flight within"
     columns = [
@@ -64,12 +55,9 @@ def learned_percentages() -> pd.DataFrame:
 def argos_fixed_policies() -> pd.DataFrame:
     """Games of two swarms of fixed policies in ARGoS 3, one row for each game.
 
-    Returns
-    -------
-    pandas.DataFrame
-        150 rows. `s1_policy`, `s2_policy` (str); `n` (int64): robots in all; `seed` (int64): 1 … 10; and for
-        each swarm k = 1, 2 `score1`, `score2` (int64): pucks; `ta_intra1` …, `ta_inter1` …, `tp1` …
-        (float64): robot-seconds in conflicts within the own swarm, in conflicts with the other swarm, and in
-        the program. In avoid against attack S1 avoids and S2 attacks.
+    150 rows. `s1_policy`, `s2_policy` (str); `n` (int64): robots in all; `seed` (int64): 1 … 10; and for each
+    swarm k = 1, 2 `score1`, `score2` (int64): pucks; `ta_intra1` …, `ta_inter1` …, `tp1` … (float64):
+    robot-seconds in conflicts within the own swarm, in conflicts with the other swarm, and in the program. In
+    avoid against attack S1 avoids and S2 attacks.
     """
     return _table("argos_fixed_policies.csv")
