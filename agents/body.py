@@ -6,8 +6,7 @@ from pydantic import Field
 
 from kswarms.agents.common.descriptions import Checked
 
-SENSORS: Final = 8
-"""Number of proximity sensors, one every 45°, the first ahead."""
+SENSORS: Final = 8  # proximity sensors, one every 45°, the first ahead
 
 
 class Body(Checked):

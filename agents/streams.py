@@ -9,8 +9,7 @@ from typing import Final
 
 from numpy.random import PCG64, Generator, SeedSequence
 
-ENVIRONMENT: Final = 2**32 - 1
-"""Number, in place of a robot's, for draws of the environment."""
+ENVIRONMENT: Final = 2**32 - 1  # in place of a robot's number, for draws of the environment
 
 
 class Purpose(IntEnum):

@@ -8,8 +8,7 @@ from typing import Final
 
 from kswarms.agents.common.errors import InputError
 
-TEMPORARY: Final = ".unfinished-"
-"""Prefix of the names of temporary files."""
+TEMPORARY: Final = ".unfinished-"  # prefix of the names of temporary files
 
 
 @contextmanager

@@ -56,10 +56,10 @@ def play_conflicts(
         require(action in where.actions, rule)
         story.append((opponent, action.name))
         if learn is not None:
-            told = learn(t_a, t_p, n_active)
-            is_pair = isinstance(told, tuple) and [isinstance(x, float) for x in told] == [True, True]
-            require(is_pair, f"learn(…) must return two floats, R and Q, not {told!r}")
-            story.append(told)
+            result = learn(t_a, t_p, n_active)
+            is_pair = isinstance(result, tuple) and [isinstance(x, float) for x in result] == [True, True]
+            require(is_pair, f"learn(…) must return two floats, R and Q, not {result!r}")
+            story.append(result)
     return story
 
 

@@ -15,8 +15,7 @@ from kswarms.agents.common.descriptions import Checked
 from kswarms.agents.learning.bandit import Bandit
 from kswarms.agents.user_code.syntax import build
 
-FORGOTTEN: Final = 1e-12
-"""An arm with a smaller discounted count is treated as untried."""
+FORGOTTEN: Final = 1e-12  # an arm with a smaller discounted count is treated as untried
 
 
 class Rule(Checked, ABC):
@@ -36,7 +35,15 @@ class Rule(Checked, ABC):
 
     @abstractmethod
     def prefer(self, bandit: Bandit, draws: Generator) -> int:
-        """Return the arm to pull, from 0, once all arms have been tried."""
+        """Return the arm to pull, from 0, once all arms have been tried.
+
+        Parameters
+        ----------
+        bandit : Bandit
+            Experience of conflicts with the opponent's swarm. A rule must not change it.
+        draws : numpy.random.Generator
+            The robot's stream for exploration. A rule must not use other sources of randomness.
+        """
 
 
 class UCB(Rule):

@@ -58,7 +58,7 @@ class Policy(Protocol):
     """
 
     def choose(self, opponent: int) -> Action:
-        """Return the action against a robot of swarm `opponent` (from 0)."""
+        """Return the action against a robot of swarm `opponent` (from 0), one of the setting's actions."""
         ...
 
 

@@ -17,8 +17,7 @@ from kswarms.agents.user_code.loading import user_errors
 
 LEARNS_BY: Final = {"reward": "wlu", "rule": "ucb"}
 """Default reward and selection rule."""
-_NOTHING: Final = (nan, nan)
-"""Reward and value of a conflict that is not learned from."""
+_NOTHING: Final = (nan, nan)  # reward and value of a conflict that is not learned from
 
 
 class Learner:
@@ -90,8 +89,7 @@ class Learner:
                 raise InputError("reward", reward, f"names swarm {opponent}, which is not learned about")
         self.learning = True
         self._draws = setting.streams.draws
-        self._explore: Generator | None = None
-        """The stream for exploration, created on first use."""
+        self._explore: Generator | None = None  # stream for exploration, created on first use
         self._opponent = -1
         self._arm = -1
 
@@ -102,7 +100,7 @@ class Learner:
         if bandit is None:
             return self._otherwise
         if not self.learning:
-            return self.learned(opponent)
+            return self.learned_action(opponent)
         draws = self._explore
         if draws is None:
             draws = self._explore = self._draws(Purpose.EXPLORE)
@@ -128,7 +126,7 @@ class Learner:
         bandit.update(arm, reward, t_a + t_p, self._factor)
         return reward, bandit.value(arm)
 
-    def learned(self, opponent: int) -> Action:
+    def learned_action(self, opponent: int) -> Action:
         """Return argmax Q for a swarm; flight if no arm was tried."""
         best = self.bandits[opponent].best()
         return self._flight if best is None else self.actions[best]

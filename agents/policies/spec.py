@@ -36,7 +36,7 @@ class PolicySpec:
 
     label: str  # text of the policy, or the name of a factory without a text
     given: Factory | None = None  # the class or factory, if the policy was given as one
-    call: Call | None = field(default=None, compare=False)  # None if no other process can import it
+    call: Call | None = field(default=None, compare=False)  # None if other processes cannot import it
 
     @classmethod
     def of_factory(cls, factory: Factory) -> Self:

@@ -22,8 +22,7 @@ from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, HOMING_ERROR, ID
 from kswarms.agents.robot.time_account import TimedAgent
 from kswarms.agents.streams import Purpose, Streams
 
-_STRAIGHT: Final = 1e-9
-"""Smaller turns are skipped (rad)."""
+_STRAIGHT: Final = 1e-9  # smaller turns are skipped (rad)
 
 
 class Krembot(TimedAgent):

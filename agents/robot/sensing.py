@@ -11,8 +11,7 @@ from kswarms.agents.body import SENSORS
 from kswarms.agents.common.arrays import Floats, Integers
 from kswarms.agents.common.jit import compiled
 
-SECTOR: Final = 2.0 * math.pi / SENSORS
-"""Angle covered by one sensor (rad)."""
+SECTOR: Final = 2.0 * math.pi / SENSORS  # angle covered by one sensor (rad)
 _COSINES: Final = tuple(math.cos(sensor * SECTOR) for sensor in range(SENSORS))
 _SINES: Final = tuple(math.sin(sensor * SECTOR) for sensor in range(SENSORS))
 _HALF_COSINE: Final = math.cos(SECTOR / 2.0)

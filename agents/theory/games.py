@@ -22,8 +22,7 @@ OWN: Final = "own"
 MET: Final = "met"
 """Players of the extensive form: Nature, the player itself, and the robot that it meets."""
 
-_TOLERANCE: Final = 1e-9
-"""Relative tolerance for the equality of payoffs."""
+_TOLERANCE: Final = 1e-9  # relative, for the equality of payoffs
 
 
 @dataclass(frozen=True, eq=False)

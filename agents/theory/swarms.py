@@ -16,8 +16,7 @@ from kswarms.agents.common.errors import InputError
 _Utility = TypeVar("_Utility", int, float)
 _Numbers = TypeVar("_Numbers", float, Floats)
 
-_TOLERANCE = 1e-9
-"""Relative tolerance for the equality of utilities."""
+_TOLERANCE = 1e-9  # relative, for the equality of utilities
 
 
 def opponents_utility(u: _Numbers) -> _Numbers:

@@ -115,7 +115,7 @@ def approximate_wlu(
 
 
 class Crowd(NamedTuple):
-    """Numbers n_k and n_m of the robots of its own swarm and of others that robot i met, and mean weights."""
+    """Numbers of robots that robot i met, of its own swarm k and of others m; weights, for k and m means."""
 
     n_k: int
     n_m: int

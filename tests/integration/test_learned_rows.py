@@ -47,6 +47,6 @@ def test_policy_rows_have_the_shares_of_the_robots() -> None:
         policies = [robot.policy for robot in model.members[swarm - 1]]
         learners = [policy for policy in policies if opponent - 1 in getattr(policy, "bandits", {})]
         assert len(learners) == {2: 6, 3: 3}[swarm]
-        chosen = [policy.learned(opponent - 1).name for policy in learners]
+        chosen = [policy.learned_action(opponent - 1).name for policy in learners]
         assert row["share"] == chosen.count(action) / len(chosen)
         assert row["attack_share"] == rows[swarm, opponent, "fight"]["share"]

@@ -150,7 +150,7 @@ def test_a_frozen_learner_chooses_the_best_action_and_learns_nothing(
     before = repr(policy.bandits)
     policy.freeze()
     for _ in range(50):
-        assert policy.choose(0) == policy.learned(0) == best
+        assert policy.choose(0) == policy.learned_action(0) == best
         assert all(math.isnan(number) for number in policy.learn(1.0, 100.0, 8))
     assert repr(policy.bandits) == before
 

@@ -136,7 +136,7 @@ def test_a_sample_has_the_results_of_every_swarm() -> None:
     last = player.history[-1]
     assert last.swarms == player.model.results()
     learners = [robot.policy for robot in player.model.members[1]]
-    fighters = sum(learner.learned(0).direction == TOWARDS for learner in learners)  # type: ignore[attr-defined]
+    fighters = sum(learner.learned_action(0).direction == TOWARDS for learner in learners)  # type: ignore[attr-defined]
     assert last.fights == {(2, 1): fighters / len(learners)}
 
 
