@@ -16,13 +16,7 @@ from kswarms.model.description.game import Game
 from kswarms.model.description.parameters import PRESETS
 from kswarms.model.game_model import GameModel
 from tests.conftest import Scene
-from tests.integration.phased_games import (
-    check_times_and_pucks,
-    conflicts_of,
-    make_game,
-    play,
-    play_learning_phase,
-)
+from tests.games import check_times_and_pucks, conflicts_of, make_game, play, play_learning_phase
 
 FITTED = PRESETS["fitted"]
 NEAR = 2 * KREMBOT.radius + KREMBOT.sensing_scale * max(FITTED.flight_range, FITTED.active_range)

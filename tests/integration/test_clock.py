@@ -14,6 +14,7 @@ from kswarms.agents.streams import Purpose, stream
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.description.parameters import PRESETS
 from kswarms.model.game_model import GameModel, Instant
+from tests import games
 
 MOTION = 2
 """SimPy priority of the motion process."""
@@ -88,8 +89,7 @@ class Trace:
 
 def make_game(**changes: Any) -> Game:
     parameters = PRESETS["fitted"].replace(**changes)
-    swarms = tuple(Swarm(policy=name, size=5) for name in ("avoid", "attack", "mixed"))
-    return Game(swarms=swarms, parameters=parameters, duration=120.0)
+    return games.make_game("avoid", "attack", "mixed", size=5, parameters=parameters, duration=120.0)
 
 
 def test_one_timeout_for_each_leg_turn_flight_and_fight(monkeypatch: pytest.MonkeyPatch) -> None:

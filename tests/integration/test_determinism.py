@@ -10,39 +10,27 @@ import numpy as np
 import pytest
 
 from kswarms.model.description.game import Game, Swarm
-from kswarms.model.description.parameters import PRESETS
 from kswarms.model.foraging import ForagingModel
 from kswarms.model.game_model import GameModel
 from kswarms.model.recorder import RECORDS
+from tests.games import make_game
 
 ALL = ",".join(RECORDS)
 
 GAMES = {
-    "three": Game(
-        swarms=tuple(Swarm(policy=name, size=6) for name in ("attack", "mixed", "avoid")), duration=40.0
-    ),
+    "three": make_game("attack", "mixed", "avoid", duration=40.0),
     "random-stations": Game(
         swarms=(Swarm(policy="avoid", size=10, drive=0.7), Swarm(policy="attack", size=10)),
         layout="random-stations",
         duration=40.0,
         supply=2,
     ),
-    "preempt": Game(
-        swarms=(Swarm(policy="aggressive", size=20), Swarm(policy="attack", size=20)),
-        parameters=PRESETS["argos"].replace(preempt=True, push_share=0.5),
-        duration=20.0,
+    "preempt": make_game(
+        "aggressive", "attack", size=20, parameters="argos, preempt=true, push_share=0.5", duration=20.0
     ),
-    "learning": Game(
-        swarms=(Swarm(policy="learner", size=6), Swarm(policy="inter-learner(rule='greedy')", size=6)),
-        learning=40.0,
-        duration=20.0,
-    ),
-    "absent": Game(
-        swarms=(Swarm(policy="attack", size=6), Swarm(policy="learner+random", size=6)),
-        learning=40.0,
-        duration=20.0,
-        absent=(1, 7),
-        absent_from="game",
+    "learning": make_game("learner", "inter-learner(rule='greedy')", learning=40.0, duration=20.0),
+    "absent": make_game(
+        "attack", "learner+random", learning=40.0, duration=20.0, absent=(1, 7), absent_from="game"
     ),
 }
 

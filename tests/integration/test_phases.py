@@ -15,13 +15,7 @@ from kswarms.agents.robot.state import ACTION
 from kswarms.model.description.game import Game
 from kswarms.model.description.parameters import PRESETS
 from kswarms.model.game_model import GameModel
-from tests.integration.phased_games import (
-    check_times_and_pucks,
-    conflicts_of,
-    make_game,
-    play,
-    play_learning_phase,
-)
+from tests.games import check_times_and_pucks, conflicts_of, make_game, play, play_learning_phase
 
 LEARNING, MEASURED = 120.0, 60.0
 SWITCH = 1200

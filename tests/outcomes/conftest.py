@@ -1,4 +1,4 @@
-"""Games played for tests of outcomes, as the results that a directory of `kswarms run` would hold."""
+"""Games for tests of outcomes, as the results of `kswarms run`."""
 
 from collections.abc import Callable
 from functools import cache
@@ -16,13 +16,13 @@ Play = Callable[[tuple[str, ...], tuple[int, ...], int, int], Results]
 
 @pytest.fixture(scope="session")
 def played() -> Play:
-    """Return a player of scenarios: ids, densities, seeds, first seed. What was played once is kept."""
+    """Return a function that plays scenarios (ids, densities, seeds, first seed) and caches the results."""
     return cache(play)
 
 
 def play(ids: tuple[str, ...], densities: tuple[int, ...], seeds: int, first_seed: int) -> Results:
-    asked = [CATALOGUE[name].replace(densities=densities, seeds=seeds) for name in ids]
-    games = list(play_all(expand(asked, first_seed), jobs=2))
+    scenarios = [CATALOGUE[name].replace(densities=densities, seeds=seeds) for name in ids]
+    games = list(play_all(expand(scenarios, first_seed), jobs=2))
     runs = result_table(games)
     assert len(runs.drop_duplicates(["scenario", "n", "seed"])) == len(ids) * len(densities) * seeds
     learned = result_table(games, "policies")

@@ -1,4 +1,4 @@
-"""The physics against ARGoS: the same controller must lose as much time and gather as much there and here."""
+"""The physics against ARGoS: the same controller has the same time in conflict and the same scores."""
 
 from collections.abc import Iterable
 from typing import Final
@@ -18,11 +18,11 @@ pytestmark = pytest.mark.slow
 
 SCENARIOS: Final = [CATALOGUE[f"argos-{pair}"] for pair in ("avoid-avoid", "attack-attack", "avoid-attack")]
 UNEQUAL: Final = "argos-avoid-attack"
-"""The one whose time in conflict must agree from N = 16 on, and whose scores up to N = 16."""
+"""Scenario whose time in conflict must agree for N ≥ 16, and whose scores for N ≤ 16."""
 
 
 def compared(scenarios: Iterable[Scenario], densities: tuple[int, ...], seeds: int) -> pd.DataFrame:
-    """Play scenarios and lay them beside ARGoS."""
+    """Play scenarios and compare them with ARGoS."""
     planned = [scenario.replace(densities=densities, seeds=seeds) for scenario in scenarios]
     return against_argos(result_table(play_all(expand(planned))))
 
@@ -30,7 +30,7 @@ def compared(scenarios: Iterable[Scenario], densities: tuple[int, ...], seeds: i
 @pytest.fixture(
     scope="module",
     params=[
-        # N = 16 is where both demands on avoid against attack meet. The demand is on 20 seeds.
+        # At N = 16, both requirements on avoid against attack apply. They are stated for 20 seeds.
         pytest.param(((6, 16, 46), 20), id="three densities"),
         pytest.param((DENSITIES, 20), id="all", marks=pytest.mark.full),
     ],
@@ -56,8 +56,8 @@ def test_the_scores_agree(comparison: pd.DataFrame) -> None:
 @pytest.mark.parametrize(
     ("scenario", "change", "n", "verdict"),
     [
-        ("argos-attack-attack", "push_share=0.5", 46, "score_fits"),  # shoving robots get through
-        ("argos-avoid-avoid", "conflict_distance=0.05", 26, "share_fits"),  # robots that see less fight less
+        ("argos-attack-attack", "push_share=0.5", 46, "score_fits"),  # robots pass
+        ("argos-avoid-avoid", "conflict_distance=0.05", 26, "share_fits"),  # fewer conflicts
     ],
 )
 def test_other_parameters_do_not_agree(scenario: str, change: str, n: int, verdict: str) -> None:

@@ -1,7 +1,7 @@
-"""Nobody is favoured: not a swarm for its label or side, not a robot for its number (specification, 2.5).
+"""Labels and sides of swarms and numbers of robots have no effect (specification, section 2.5).
 
-Statistical where chance decides, with tolerances from the seeds; exact where it can be, by playing a game
-again with robots, sides and every draw exchanged.
+Some tests are statistical, with tolerances from the seeds. Others are exact: they play a game and its image
+under a symmetry of the arena, with the robots and their random draws exchanged.
 """
 
 import math
@@ -24,7 +24,7 @@ Values = NDArray[np.float64]
 
 
 def make_game(policies: str, n: int, duration: float = 600.0, drive: float = 0.6, **changes: Any) -> Game:
-    """Return a game of equal swarms, the first with a drive of its own."""
+    """Return a game of equal swarms; `drive` is the drive of the first."""
     names = policies.split(",")
     return Game(
         swarms=tuple(
@@ -43,7 +43,7 @@ def play(game: Game, seed: int) -> GameModel:
 
 
 def may_be_zero(values: Sequence[float] | Values) -> bool:
-    """Return whether 0 lies in the 99 % interval of the mean of independent values (40 and more)."""
+    """Return whether 0 is in the 99 % interval of the mean of 40 or more independent values."""
     values = np.asarray(values)
     return bool(abs(values.mean()) <= 2.7 * values.std(ddof=1) / math.sqrt(len(values)))
 
@@ -55,8 +55,8 @@ def test_the_interval_detects_a_difference() -> None:
 
 
 def lead(game: Game, seeds: int) -> list[int]:
-    """Return S1's pucks less S2's, for each seed."""
-    return [models.pucks[0] - models.pucks[1] for models in (play(game, seed) for seed in range(seeds))]
+    """Return the pucks of S1 less those of S2, for each seed."""
+    return [model.pucks[0] - model.pucks[1] for model in (play(game, seed) for seed in range(seeds))]
 
 
 @pytest.mark.slow
@@ -67,28 +67,25 @@ def test_equal_swarms_score_alike(policies: str) -> None:
 
 @pytest.mark.slow
 def test_a_faster_swarm_scores_more() -> None:
-    # The same test finds the difference that there is.
     assert not may_be_zero(lead(make_game("avoid,avoid", 20, duration=400.0, drive=0.7), 240))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("n", [10, 30])
 def test_swapping_labels_and_sides_mirrors_the_results(n: int) -> None:
-    differences: dict[str, list[float]] = {name: [] for name in ("avoid", "attack", "t_a", "conflicts")}
+    differences = []
     for seed in range(40):
         attack, avoid = play(make_game("attack,avoid", n, duration=400.0), seed).results()
-        avoid_there, attack_there = play(make_game("avoid,attack", n, duration=400.0), 40 + seed).results()
-        differences["avoid"].append(avoid["pucks"] - avoid_there["pucks"])
-        differences["attack"].append(attack["pucks"] - attack_there["pucks"])
-        differences["t_a"].append(attack["t_a_inter"] - attack_there["t_a_inter"])
-        differences["conflicts"].append(avoid["conflicts_inter"] - avoid_there["conflicts_inter"])
-    assert {name: may_be_zero(values) for name, values in differences.items()} == dict.fromkeys(
-        differences, True
-    )
+        other_avoid, other_attack = play(make_game("avoid,attack", n, duration=400.0), 40 + seed).results()
+        pucks = [avoid["pucks"] - other_avoid["pucks"], attack["pucks"] - other_attack["pucks"]]
+        time_in_conflict = attack["t_a_inter"] - other_attack["t_a_inter"]
+        conflicts = avoid["conflicts_inter"] - other_avoid["conflicts_inter"]
+        differences.append([*pucks, time_in_conflict, conflicts])
+    assert [may_be_zero(values) for values in np.transpose(differences)] == [True] * 4
 
 
 def correlations_with_index(models: Sequence[GameModel], of: Callable[[Krembot], float]) -> list[float]:
-    """Return the correlation of a quantity with the number in the swarm, for each swarm of each game."""
+    """Return the correlation of a quantity with the number of the robot, for each swarm of each game."""
     found = []
     for model in models:
         for members in model.members:
@@ -107,39 +104,23 @@ def test_the_order_of_robots_has_no_effect(policies: str, n: int) -> None:
     assert may_be_zero(correlations_with_index(models, lambda robot: robot.pucks))
     assert may_be_zero(correlations_with_index(models, lambda robot: sum(robot.t_a)))
     assert may_be_zero(correlations_with_index(models, lambda robot: sum(robot.conflicts)))
-    # Nor among all robots, where the swarms are equal.
-    if policies == "avoid,avoid":
-        halves = [
-            sum(robot.pucks for robot in model.robots[::2]) - sum(robot.pucks for robot in model.robots[1::2])
-            for model in models
-        ]
-        assert may_be_zero(halves)
+    if policies == "avoid,avoid":  # equal swarms: even numbers against odd numbers of all robots
+        pucks = np.array([[robot.pucks for robot in model.robots] for model in models])
+        assert may_be_zero(pucks[:, ::2].sum(axis=1) - pucks[:, 1::2].sum(axis=1))
 
 
 @dataclass
 class Exchange:
-    """A symmetry of the symmetric arena, and an exchange of robots that goes with it.
-
-    Attributes
-    ----------
-    name : str
-        For the test's name.
-    signs : tuple of int
-        Factors of x and y.
-    twins : callable
-        Number of a robot's twin, of the robot's number and N.
-    swaps : bool
-        Whether the swarms change places.
-    """
+    """A symmetry of the symmetric arena, and the exchange of robots that belongs to it."""
 
     name: str
-    signs: tuple[int, int]
-    twins: Callable[[int, int], int]
-    swaps: bool
+    signs: tuple[int, int]  # factors of x and y
+    twins: Callable[[int, int], int]  # number of a robot's twin, from the robot's number and N
+    swaps: bool  # whether the swarms change places
 
     @property
-    def turns_over(self) -> bool:
-        """Whether left and right are exchanged."""
+    def is_reflection(self) -> bool:
+        """Whether left and right turns are exchanged."""
         return self.signs[0] * self.signs[1] < 0
 
     def heading(self, heading: float) -> float:
@@ -147,7 +128,7 @@ class Exchange:
 
 
 class Exchanged:
-    """A stream with the mirrored draws of the twin."""
+    """Random stream of a robot's twin, with mirrored draws."""
 
     def __init__(self, exchange: Exchange, draws: Generator, purpose: Purpose) -> None:
         self._exchange, self._draws, self._purpose = exchange, draws, purpose
@@ -163,30 +144,29 @@ class Exchanged:
         if self._purpose == Purpose.WALL:  # a heading
             return self._exchange.heading(drawn)
         assert self._purpose == Purpose.WANDER
-        return -drawn if self._exchange.turns_over else drawn
+        return -drawn if self._exchange.is_reflection else drawn
 
 
 def exchange_draws(model: GameModel, exchange: Exchange, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Give all robots the draws of their twins from now on."""
+    """Give all robots the random draws of their twins."""
     n = model.game.size
-    monkeypatch.setattr(
-        "kswarms.agents.streams.stream",
-        lambda seed, robot, purpose: Exchanged(
-            exchange, stream(seed, exchange.twins(robot, n), purpose), purpose
-        ),
-    )
-    if exchange.turns_over:
+
+    def exchanged_stream(seed: int, robot: int, purpose: Purpose) -> Exchanged:
+        return Exchanged(exchange, stream(seed, exchange.twins(robot, n), purpose), purpose)
+
+    monkeypatch.setattr("kswarms.agents.streams.stream", exchanged_stream)
+    if exchange.is_reflection:
         choose = Krembot._vacant_direction
 
-        def choose_in_the_mirror(robot: Krembot, vacant: int) -> float:
+        def choose_mirrored(robot: Krembot, vacant: int) -> float:
             mirrored = sum(1 << (-sensor % 8) for sensor in range(8) if vacant >> sensor & 1)
             return -choose(robot, mirrored)
 
-        monkeypatch.setattr(Krembot, "_vacant_direction", choose_in_the_mirror)
+        monkeypatch.setattr(Krembot, "_vacant_direction", choose_mirrored)
 
 
 def put_twins(model: GameModel, original: GameModel, exchange: Exchange) -> None:
-    """Put every robot where its twin stands, seen in the mirror."""
+    """Place each robot at the mirrored pose of its twin."""
     states, source = model.states, original.states
     for robot in range(model.game.size):
         twin = exchange.twins(robot, model.game.size)
@@ -211,10 +191,10 @@ EXCHANGES = [
 
 
 def play_exchanged(game: Game, seed: int, exchange: Exchange) -> float:
-    """Play a game and its image, and return how far apart they ever are (m), compared every period.
+    """Play a game and its image; return the maximum distance of a robot from its image in any period (m).
 
-    Infinity if rounding decided which of two, equally near, a robot met, or which way it turned round.
-    It must have been rounding.
+    Return infinity if rounding decided which of two equally near robots a robot met, or the sense of a half
+    turn.
     """
     twins = [exchange.twins(robot, game.size) for robot in range(game.size)]
     game = game.replace(sample_period=game.parameters.period)
@@ -228,7 +208,7 @@ def play_exchanged(game: Game, seed: int, exchange: Exchange) -> float:
     while not model.ended:
         model.step()
         robots = model.states.robots[twins]
-        turns = -robots["turn_rate"] if exchange.turns_over else robots["turn_rate"]
+        turns = -robots["turn_rate"] if exchange.is_reflection else robots["turn_rate"]
         path.append((model.states.positions[twins] * exchange.signs, image_of[robots["opponent"]], turns))
     apart, tied = 0.0, False
     with pytest.MonkeyPatch.context() as monkeypatch:
@@ -239,7 +219,7 @@ def play_exchanged(game: Game, seed: int, exchange: Exchange) -> float:
             apart = max(apart, float(np.abs(image.states.positions - positions).max()))
             opposite = abs(turns + image.states.robots["turn_rate"]) < 1e-12
             for turn in turns[opposite & (turns != 0)]:
-                # Whoever drives home, flees straight back and turns home again turns by exactly half a turn.
+                # A robot that drives home, flees straight back and turns home again makes a half turn.
                 tied |= apart < 1e-6 and abs(math.remainder(math.pi, turn)) < 1e-9
             for robot in np.flatnonzero(image.states.robots["opponent"] != met):
                 if apart < 1e-6 and not tied:
@@ -266,20 +246,22 @@ def play_exchanged(game: Game, seed: int, exchange: Exchange) -> float:
     [{}, {"preempt": True, "push_share": 0.5}, {"wall_escape": "away", "wall_half_angle": 0.7}],
     ids=str,
 )
-def test_an_exchanged_game_is_the_game_exchanged(
+def test_an_exchanged_game_has_the_exchanged_outcome(
     exchange: Exchange, policies: str, changes: dict[str, Any]
 ) -> None:
     game = make_game(policies, 24, 20.0, station_radius=0.3, **changes)
     apart = [play_exchanged(game, seed, exchange) for seed in range(5)]
-    # Rounding differs between the two, and now and then a contact is decided by it; a rule that favours
-    # anyone would part all of them.
+    # Rounding differs between the two games and sometimes decides a contact. A rule that favours a robot or
+    # a swarm would make all pairs of games differ.
     assert sum(distance < 1e-6 for distance in apart) >= 3, apart
 
 
 def test_an_effect_of_the_order_on_a_game_is_detected(monkeypatch: pytest.MonkeyPatch) -> None:
     choose = Krembot._vacant_direction
-    monkeypatch.setattr(
-        Krembot, "_vacant_direction", lambda robot, vacant: choose(robot, vacant) + 1e-3 * (robot.index == 3)
-    )
+
+    def choose_unfairly(robot: Krembot, vacant: int) -> float:
+        return choose(robot, vacant) + 1e-3 * (robot.index == 3)
+
+    monkeypatch.setattr(Krembot, "_vacant_direction", choose_unfairly)
     game = make_game("avoid,attack", 24, 20.0)
     assert min(play_exchanged(game, seed, EXCHANGES[0]) for seed in range(3)) > 1e-6

@@ -1,4 +1,4 @@
-"""What the source found for fixed policies (specification, section 3.4, figures 6.1 to 6.3), on our seeds."""
+"""Findings of the source on fixed policies (specification, section 3.4, figures 6.1 to 6.3)."""
 
 from collections.abc import Callable
 
@@ -10,6 +10,8 @@ from kswarms.analysis.results.runs import Results
 pytestmark = pytest.mark.slow
 
 BY_ID = {finding.id: finding for finding in FINDINGS}
+FINDINGS_THAT_HOLD = ("6.1a-rise-and-fall", "6.1b-below-6.1a", "6.1b-below-6.1c", "6.1c-together")
+FINDINGS_THAT_HOLD += ("6.3-attackers-in-conflict", "6.3-mostly-inter-swarm")
 
 
 @pytest.fixture(
@@ -24,37 +26,27 @@ def results(request: pytest.FixtureRequest, played: Callable[..., Results]) -> R
     return played(("fig-6.1a", "fig-6.1b", "fig-6.1c", "fig-6.3"), densities, seeds, 0)
 
 
-@pytest.mark.parametrize(
-    "finding",
-    [
-        "6.1a-rise-and-fall",
-        "6.1b-below-6.1a",
-        "6.1b-below-6.1c",
-        "6.1c-together",
-        "6.3-attackers-in-conflict",
-        "6.3-mostly-inter-swarm",
-    ],
-)
+@pytest.mark.parametrize("finding", FINDINGS_THAT_HOLD)
 def test_the_finding_holds(finding: str, results: Results) -> None:
     verdict = judge(BY_ID[finding], results)
     assert verdict.verdict == HOLDS, str(verdict)
 
 
 @pytest.mark.parametrize("seeds", [8, pytest.param(20, marks=pytest.mark.full)])
-def test_attackers_lead_where_robots_are_many(seeds: int, played: Callable[..., Results]) -> None:
-    # At all densities that it speaks of: at one of them eight seeds leave it open.
+def test_attackers_lead_at_high_densities(seeds: int, played: Callable[..., Results]) -> None:
+    # All densities of the finding; at a single one, eight seeds leave the verdict open.
     verdict = judge(BY_ID["6.1c-attack-at-high-n"], played(("fig-6.1c",), (40, 46, 50), seeds, 0))
     assert verdict.verdict == HOLDS, str(verdict)
 
 
 def test_two_avoiding_swarms_score_alike(results: Results) -> None:
-    # Without the margin: eight seeds cannot tell the two from each other at all.
+    # Without the margin: eight seeds show no difference.
     finding = BY_ID["6.1a-alike"]
     verdict = judge(finding.replace(claim=finding.claim.replace(margin=0.0)), results)
     assert verdict.verdict != FAILS, str(verdict)
 
 
-def test_a_game_for_pucks_ends_with_the_fiftieth(results: Results) -> None:
+def test_a_puck_limited_game_ends_at_fifty_pucks(results: Results) -> None:
     games = results.runs[results.runs["scenario"] == "fig-6.3"]
     assert (games["ended"] == "pucks").all()
     assert (games.groupby(["n", "seed"])["pucks"].sum() == 50).all()

@@ -1,7 +1,7 @@
-"""What the source found of learners in chapter 6, and Table 6.1, over seeds that nothing was fitted to.
+"""Findings of the source on learners in chapter 6, and Table 6.1, with seeds that were not used for fitting.
 
-Few densities and seeds, as intervals allow, run everywhere; all of them with the marker `full`. A game is
-3000 s of learning and 600 s that count (specification, sections 3.1 and 3.4).
+A few densities and seeds run by default, all of them with the marker `full`. A game has a learning phase of
+3000 s and a measured game of 600 s (specification, sections 3.1 and 3.4).
 """
 
 from collections.abc import Callable
@@ -17,39 +17,29 @@ LEARNING: Final = (("fig-6.4a", "fig-6.4b"), ("fig-6.6", "fig-6.7", "fig-6.8"))
 """Scenarios of learners that learn about other swarms, and of learners about their own swarm."""
 DENSITIES: Final = (6, 10, 16, 20, 26, 30, 36, 40, 46, 50)
 FIRST_SEED: Final = 1000
-"""Nothing is fitted to the seeds from here on."""
+"""Smaller seeds were used for fitting."""
 ONE_SIDED: Final = 0.9
-"""Of two-sided intervals: each bound alone is one of 95 %."""
+"""Confidence of a two-sided interval, each bound of which has 95 %."""
 
 TABLE_ERROR: Final = 8.0
-"""Mean absolute error over the cells of Table 6.1 that is tolerated (percentage points)."""
+"""Maximum mean absolute error over the cells of Table 6.1 (percentage points)."""
 CONTRADICTED: Final = ("6.4b", 30)
-"""Where the learner scores less than its opponent, against the source: by 2.6 pucks over 120 seeds."""
+"""Density at which the learner scores less than its opponent, unlike the source: 2.6 pucks (120 seeds)."""
 
 BY_ID: Final = {finding.id: finding for finding in FINDINGS}
 
 
 class Sample(NamedTuple):
-    """How many games are played.
-
-    Attributes
-    ----------
-    densities : tuple of int
-        Numbers of robots.
-    seeds : int
-        Games of each scenario and density.
-    scenarios : tuple of tuple of str
-        Which ones, in groups that are played together.
-    """
+    """Games that a test plays."""
 
     densities: tuple[int, ...]
-    seeds: int
-    scenarios: tuple[tuple[str, ...], ...] = LEARNING
+    seeds: int  # games of each scenario and density
+    scenarios: tuple[tuple[str, ...], ...] = LEARNING  # in groups that are played together
 
 
 FEW = Sample((6, 30, 50), seeds=8)
 ALL = Sample(DENSITIES, seeds=20)
-# Scores of few robots vary most from seed to seed, and cost least.
+# Scores of few robots vary most between seeds, and their games are the fastest.
 SPARSE = Sample((6, 10, 16), seeds=20, scenarios=(("fig-6.4b",),))
 
 each_sample = pytest.mark.parametrize(
@@ -65,7 +55,7 @@ Outcomes = Callable[[Sample, str], Results]
 
 @pytest.fixture
 def outcomes(played: Callable[..., Results]) -> Outcomes:
-    """Return a player of the group of scenarios that one belongs to."""
+    """Return a function that plays the group of a scenario."""
 
     def of(sample: Sample, scenario: str) -> Results:
         (group,) = (group for group in sample.scenarios if scenario in group)
@@ -75,7 +65,7 @@ def outcomes(played: Callable[..., Results]) -> Outcomes:
 
 
 def without_margin(finding: Finding, **changes: Any) -> Finding:
-    """Return a finding that grants nothing, each bound of its intervals at 95 %."""
+    """Return a finding without a margin, whose intervals have bounds of 95 %."""
     claim = finding.claim.replace(margin=0.0, **changes)
     return finding.replace(claim=claim, confidence=ONE_SIDED)
 
@@ -85,7 +75,7 @@ def without_margin(finding: Finding, **changes: Any) -> Finding:
 def test_the_learner_scores_at_least_as_much_as_its_opponent(
     figure: str, sample: Sample, outcomes: Outcomes
 ) -> None:
-    # Where all learn flight both swarms do the same: a tie, which one interval in twenty denies.
+    # If all learn flight, both swarms behave alike; one interval in twenty excludes the tie.
     densities = tuple(n for n in sample.densities if (figure, n) != CONTRADICTED)
     finding = without_margin(BY_ID[f"{figure}-at-least"], densities=densities)
     verdict = judge(finding, outcomes(sample, f"fig-{figure}"))
@@ -109,7 +99,7 @@ def test_against_attackers_learners_of_flight_score_less_at_one_density(outcomes
     ],
 )
 def test_against_attackers_the_learner_scores_clearly_more(sample: Sample, outcomes: Outcomes) -> None:
-    """The source has it so at every N; seen it is at each where robots are few, and over all N together."""
+    # The source reports it at every N; here it holds at each small N, and on average over all N.
     over = "each N" if sample is SPARSE else "mean over N"
     finding = without_margin(BY_ID["6.4b-clearly-more"], over=over)
     verdict = judge(finding, outcomes(sample, "fig-6.4b"))
@@ -124,7 +114,7 @@ def test_more_than_99_percent_learn_flight_within_the_swarm(
     finding = BY_ID[f"{figure}-flight-within"].replace(confidence=ONE_SIDED)
     verdict = judge(finding, outcomes(sample, f"fig-{figure}"))
     assert effect(verdict) > 99
-    if sample is ALL:  # enough robots to leave no doubt
+    if sample is ALL:  # few games leave the verdict open
         assert verdict.verdict == HOLDS, str(verdict)
 
 

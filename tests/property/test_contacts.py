@@ -32,11 +32,11 @@ def drive(scene: Scene, periods: int = 1) -> Floats:
     return scene.states.positions - before
 
 
-# ----------------------------------------------------------------------------------------- whatever the state
+# --------------------------------------------------------------------------------------------- general states
 
 
 def assert_apart(positions: Floats, radius: float, half: float) -> None:
-    """Check that no bodies overlap by more than 0.1 mm and none sticks in a wall."""
+    """Check that no bodies overlap by more than 0.1 mm and all are inside the walls."""
     distance = np.hypot(*(positions[:, None] - positions[None]).T)
     np.fill_diagonal(distance, np.inf)
     assert distance.min() >= 2 * radius - LARGEST_OVERLAP
@@ -56,7 +56,7 @@ def test_bodies_stay_apart_and_inside(scene: Scene) -> None:
 @settings(deadline=None, max_examples=300)
 @given(scenes(), st.integers(0, 2**32 - 1))
 def test_the_outcome_does_not_depend_on_the_last_bit(scene: Scene, seed: int) -> None:
-    # Bodies that were stopped, or parted, just touch: whether they overlap by 1e-17 m must not matter.
+    # Stopped bodies touch each other; an overlap of 1e-17 m must have no effect.
     scene = crowded(scene)
     other = clone(scene)
     other.states.positions += np.random.default_rng(seed).uniform(-1e-13, 1e-13, other.states.positions.shape)
@@ -81,12 +81,20 @@ def pair(
     friction: float = 0.0,
     push_share: float = 0.0,
 ) -> tuple[Scene, Floats]:
-    """Place two robots with a gap between them; return also the unit vector from the first to the second."""
+    """Return a scene of two robots with a gap, and the unit vector from the first to the second."""
     normal = unit(direction)
     first = np.array((0.1, -0.05))
     positions = np.array((first, first + (2 * R + gap) * normal))
     game = game_of(2, friction, push_share)
     return make_scene(game, positions, np.add(direction, headings), np.array(strides)), normal
+
+
+def slide(normal: Floats, gap: float, turn: float, friction: float) -> Floats:
+    """Return the displacement of a robot that drives at `turn` from `normal` into an obstacle at rest."""
+    blocked = max(0.0, STRIDE * math.cos(turn) - gap)
+    along = max(0.0, STRIDE * abs(math.sin(turn)) - friction * blocked)
+    tangent = np.array((-normal[1], normal[0]))
+    return (STRIDE * math.cos(turn) - blocked) * normal + math.copysign(along, turn) * tangent
 
 
 @settings(deadline=None, max_examples=50)
@@ -106,11 +114,7 @@ def test_a_contact_removes_the_normal_motion_and_friction(
 ) -> None:
     scene, normal = pair(direction, gap, (turn, 0.0), (STRIDE, 0.0), friction)
     moved = drive(scene)
-    blocked = max(0.0, STRIDE * math.cos(turn) - gap)
-    along = max(0.0, STRIDE * abs(math.sin(turn)) - friction * blocked)
-    expected = (STRIDE * math.cos(turn) - blocked) * normal
-    expected += math.copysign(along, turn) * np.array((-normal[1], normal[0]))
-    np.testing.assert_allclose(moved[0], expected, rtol=0, atol=EXACT)
+    np.testing.assert_allclose(moved[0], slide(normal, gap, turn, friction), rtol=0, atol=EXACT)
     assert not moved[1].any()  # a standing robot is not moved
 
 
@@ -142,11 +146,7 @@ def test_a_wall_removes_the_normal_motion_and_friction(
     scene = make_scene(
         game_of(1, friction, push_share), [(1 - R - gap) * outwards], [side * math.pi / 2 + turn], STRIDE
     )
-    blocked = max(0.0, STRIDE * math.cos(turn) - gap)
-    along = max(0.0, STRIDE * abs(math.sin(turn)) - friction * blocked)
-    expected = (STRIDE * math.cos(turn) - blocked) * outwards
-    expected += math.copysign(along, turn) * np.array((-outwards[1], outwards[0]))
-    np.testing.assert_allclose(drive(scene)[0], expected, rtol=0, atol=EXACT)
+    np.testing.assert_allclose(drive(scene)[0], slide(outwards, gap, turn, friction), rtol=0, atol=EXACT)
 
 
 # ----------------------------------------------------------------------------------------------------- wedges
@@ -155,7 +155,7 @@ def test_a_wall_removes_the_normal_motion_and_friction(
 @pytest.mark.parametrize("aside", [0.001, 0.002, -0.01])
 @pytest.mark.parametrize("turn", [0.0, 0.3, 2.0, -2.8])
 def test_a_wedge_gives_way_a_little(turn: float, aside: float) -> None:
-    # Two stand, less than a body apart; a third drives in between, and in the end through.
+    # A robot drives through the gap between two robots at rest, which is narrower than a body.
     turned = np.array((unit(turn), unit(turn + math.pi / 2)))
     positions = np.array(((0.0, 1.75 * R), (0.0, -1.75 * R), (-1.1 * R, aside))) @ turned
     game = game_of(3)
@@ -163,9 +163,9 @@ def test_a_wedge_gives_way_a_little(turn: float, aside: float) -> None:
     moved = drive(scene, 60) @ turned.T
     assert moved[2, 0] > 2 * R
     assert min(moved[0, 1], -moved[1, 1]) > 0.1 * R
-    # Half a radius in all would let it through.
+    # Half a radius in all is enough.
     assert moved[0, 1] - moved[1, 1] == pytest.approx(0.5 * R, abs=0.01 * R)
-    # Equal shares over and over, and nothing else, would share it between the two in the same way.
+    # Relaxation without momentum gives the same displacements.
     plain = Ground(R, game.side / 2, game.parameters.friction, 0.0, most_momentum=0.0)
     slow = positions.copy()
     for _ in range(60):
@@ -177,7 +177,7 @@ def test_a_wedge_gives_way_a_little(turn: float, aside: float) -> None:
 @pytest.mark.parametrize("across", [0.0, 0.4, 1 - R])
 @pytest.mark.parametrize("turn", [0.0, math.pi / 2, math.pi, -math.pi / 2])
 def test_a_straight_row_from_wall_to_wall_gives_way(turn: float, across: float) -> None:
-    # Twelve where there is room for less, exactly in line; one of them drives on.
+    # Twelve robots exactly in line, in a row with room for fewer; one of them drives.
     along = np.linspace(R - 1, 1 - R, 12)
     turned = np.array((unit(turn), unit(turn + math.pi / 2)))
     positions = np.column_stack((along, np.full(12, across))) @ turned
@@ -188,12 +188,12 @@ def test_a_straight_row_from_wall_to_wall_gives_way(turn: float, across: float) 
 
 
 def test_bodies_that_cannot_be_parted_are_an_error() -> None:
-    # A hundred bodies that have grown since they were placed: they would cover more than there is.
+    # A hundred bodies with a radius for which they would cover more than the arena.
     side = np.linspace(R - 1, 1 - R, 10)
     scene = make_scene(game_of(100), np.array([(x, y) for x in side for y in side]), 0.0, STRIDE)
     kernel = scene.kernel()
     kernel.memory.scalars["radius"] = 0.11
-    assert kernel.advance(0, 1)[0] == 0  # some perceive something, and decide nothing
+    assert kernel.advance(0, 1)[0] == 0  # stops at the first decision
     with pytest.raises(ValueError, match="nothing parts them"):
         kernel.advance(0, 1)
 
@@ -203,7 +203,7 @@ def test_bodies_that_cannot_be_parted_are_an_error() -> None:
 def test_a_robot_between_two_is_not_frozen(
     direction: float, turn: float, above: float, below: float, friction: float
 ) -> None:
-    # Two drive at each other with a third between them, which drives across, steeper than friction holds it.
+    # Two robots drive at each other; the third, between them, drives across, too steeply for friction.
     turned = np.array((unit(direction), unit(direction + math.pi / 2)))
     positions = np.array(((-2.01 * R, above), (2.01 * R, below), (0.0, 0.0))) @ turned
     headings = [direction, direction + math.pi, direction + math.pi / 2 + turn]
@@ -214,8 +214,8 @@ def test_a_robot_between_two_is_not_frozen(
 @settings(deadline=None, max_examples=20)
 @given(st.floats(-0.3, 0.3), st.floats(-0.4, 0.4), frictions)
 def test_a_robot_between_a_wall_and_another_is_not_frozen(turn: float, place: float, friction: float) -> None:
-    # It drives along the wall, somewhat into it or into the robot that presses it there. With friction 1.5
-    # it does stick if it drives far enough into the wedge between the wall and a robot ahead.
+    # The robot drives along the wall, partly into it or into the robot that presses it there. With friction
+    # 1.5, it sticks if it drives far into the wedge between the wall and a robot ahead.
     assume(friction < 1 or turn - place < 0.5)
     positions = (1 - R, 0.0) - np.outer((0, 2.01 * R), unit(place))
     scene = make_scene(game_of(2, friction), positions, [math.pi / 2 + turn, 0.0], STRIDE)

@@ -8,15 +8,13 @@ from hypothesis import given, settings
 
 from kswarms.agents.common.arrays import Records
 from kswarms.agents.robot.state import IDLE, RobotStates
-from kswarms.model.description.game import Game, Swarm
-from kswarms.model.description.parameters import PRESETS, Parameters
+from kswarms.model.description.game import Game
 from kswarms.model.game_model import GameModel
 from kswarms.model.kernel.arrays import CONFLICT, EVENT, HOMING, LEG_DUE, PICK_UP
+from tests.games import make_game
 from tests.reference.compare import assert_same_events, assert_same_state, compared
 from tests.reference.kernel import Event, ReferenceKernel, State
 from tests.reference.states import Scene, make_scene, scenes
-
-ARGOS, FITTED = PRESETS["argos"], PRESETS["fitted"]
 
 
 @pytest.mark.slow
@@ -30,21 +28,21 @@ def test_a_period_equals_the_reference(scene: Scene) -> None:
             pass  # without decisions, the next stage of the same period follows
 
 
-def test_percepts_follow_pick_ups_even_when_time_stands_still() -> None:
-    game = make_game("avoid", 1, FITTED, "krembot-sim", 10)
+def test_percepts_follow_pick_ups_in_the_same_period() -> None:
+    game = make_game("avoid", size=1, duration=10)
     scene = make_scene(game, game.arena(0).stations[:1], [0.0], 0.015)
     scene.states.robots["phase"] = IDLE
     kernel, calls = scene.kernel(), list[int]()
     advance = compared(kernel, ReferenceKernel(game, scene.arena), scene.states, calls)
-    told = [(advance(0, until)[1], int(kernel.events["kind"][0])) for until in (0, 1, 0)]
-    assert told == [(0, 0), (1, PICK_UP), (1, LEG_DUE)]
+    found = [(advance(0, until)[1], int(kernel.events["kind"][0])) for until in (0, 1, 0)]
+    assert found == [(0, 0), (1, PICK_UP), (1, LEG_DUE)]
     assert advance(0, 0) == (0, 0)
     assert calls == [0, 0, 0, 0]
     assert advance(0, 1) == (1, 0)
 
 
 def play_compared(game: Game, seed: int, spoil_skin: float | None = None) -> tuple[GameModel, list[int]]:
-    """Play a game, every call of the kernel compared; return also how long the calls were."""
+    """Play a game and compare each call of the kernel; return also the numbers of periods of the calls."""
     model = GameModel(game, seed)
     kernel = model._kernel
     calls: list[int] = []
@@ -55,18 +53,13 @@ def play_compared(game: Game, seed: int, spoil_skin: float | None = None) -> tup
     return model, calls
 
 
-def make_game(policies: str, size: int, parameters: Parameters, body: str, duration: float) -> Game:
-    swarms = tuple(Swarm(policy=policy, size=size) for policy in policies.split(","))
-    return Game(swarms=swarms, parameters=parameters, body=body, duration=duration)
-
-
 @pytest.mark.parametrize(
     "game",
     [
-        make_game("avoid,attack", 10, FITTED, "krembot-sim", 25),
-        make_game("aggressive,mixed,avoid", 10, ARGOS, "krembot-sim", 20),
-        make_game("attack,attack", 20, FITTED.replace(preempt=True, push_share=0.5), "krembot-sim", 10),
-        make_game("avoid", 60, ARGOS.replace(preempt=True), "krembot", 10),
+        make_game("avoid", "attack", size=10, duration=25),
+        make_game("aggressive", "mixed", "avoid", size=10, parameters="argos", duration=20),
+        make_game("attack", "attack", size=20, parameters="fitted, preempt=1, push_share=0.5", duration=10),
+        make_game("avoid", size=60, parameters="argos, preempt=1", body="krembot", duration=10),
     ],
     ids=lambda game: f"{game.body}-{game.size}",
 )
@@ -77,8 +70,9 @@ def test_a_game_equals_the_reference(game: Game) -> None:
 
 
 def test_long_calls_use_current_neighbours() -> None:
-    # Few robots, far apart: many periods in one call, in which everyone leaves the cells that the lists know.
-    game = make_game("avoid,attack", 3, FITTED.replace(leg_mean=60, wall_distance=0.3), "krembot", 200)
+    # A call with few robots has many periods, in which all robots leave the cells of the lists.
+    parameters = "fitted, leg_mean=60, wall_distance=0.3"
+    game = make_game("avoid", "attack", size=3, parameters=parameters, body="krembot", duration=200)
     _, calls = play_compared(game, seed=3)
     assert max(calls) * 0.015 > 10 * game.body.radius
 
@@ -87,7 +81,7 @@ def test_long_calls_use_current_neighbours() -> None:
 
 
 def test_a_stale_neighbour_list_is_detected() -> None:
-    game = make_game("avoid,attack", 10, FITTED, "krembot-sim", 60)
+    game = make_game("avoid", "attack", size=10, duration=60)
     with pytest.raises(AssertionError):
         play_compared(game, seed=1, spoil_skin=100.0)
 
@@ -96,7 +90,7 @@ def test_a_stale_neighbour_list_is_detected() -> None:
     "change", [{"friction": 0.2}, {"push_share": 0.1}, {"conflict_distance": 0.2}, {"active_range": 0.25}]
 )
 def test_a_different_rule_is_detected(change: dict[str, float]) -> None:
-    game = make_game("avoid,aggressive", 15, FITTED, "krembot-sim", 60)
+    game = make_game("avoid", "aggressive", size=15, duration=60)
     other = game.replace(parameters=game.parameters.replace(**change))
     model = GameModel(game, seed=1)
     reference = ReferenceKernel(other, model.arena)

@@ -42,10 +42,10 @@ ACTIONS = 2
 
 
 class Meetings(NamedTuple):
-    """A game in which each two players meet once, every payoff a whole number, so that sums are exact.
+    """A game in which each pair of players meets once. Payoffs are integers, so that sums are exact.
 
-    `payoff[i, j, a_i, a_j]` is what i has from j: anything within a swarm, the opposite of what j has from i
-    between swarms. `absent[i, j]` is what j has in place of i if i is not there.
+    `payoff[i, j, a_i, a_j]` is the utility of player i from meeting j; between swarms, it is the negative of
+    the utility of j. `absent[i, j]` replaces the utility of j from meeting i if i is absent.
     """
 
     swarm_of: list[int]
@@ -53,14 +53,14 @@ class Meetings(NamedTuple):
     absent: Floats
 
     def utilities(self, profile: list[int], without: int | None = None) -> Floats:
-        """Return u_i^m, shape (N, K); of nobody for who is not there."""
+        """Return u_i^m, shape (N, K); zeros for an absent player."""
         u = np.zeros((len(self.swarm_of), max(self.swarm_of) + 1))
         for i in range(len(self.swarm_of)):
             for j, swarm in enumerate(self.swarm_of):
                 if i in (j, without):
                     continue
-                here = self.payoff[i, j, profile[i], profile[j]]
-                u[i, swarm] += self.absent[j, i] if j == without else here
+                present = self.payoff[i, j, profile[i], profile[j]]
+                u[i, swarm] += self.absent[j, i] if j == without else present
         return u
 
     def totals(self, profile: list[int], without: int | None = None) -> list[float]:
@@ -116,7 +116,9 @@ def test_the_differences_of_any_two_swarms_cancel(outcomes: list[tuple[float, fl
 
 
 @given(st.integers(2, 5), st.integers(-999, 999), st.data())
-def test_a_dummy_swarm_closes_a_game_of_constant_sum(swarms: int, constant: int, data: st.DataObject) -> None:
+def test_a_dummy_swarm_makes_a_constant_sum_game_zero_sum(
+    swarms: int, constant: int, data: st.DataObject
+) -> None:
     others = arrays(np.int64, (4, swarms - 1), elements=st.integers(-999, 999))
     outcomes = data.draw(others).astype(float)
     outcomes = np.column_stack([outcomes, constant - outcomes.sum(axis=1)])
@@ -127,7 +129,7 @@ def test_a_dummy_swarm_closes_a_game_of_constant_sum(swarms: int, constant: int,
 
 
 @given(meetings(), profiles)
-def test_what_swarms_have_from_each_other_cancels(game: Meetings, profile: list[int]) -> None:
+def test_utilities_between_swarms_cancel(game: Meetings, profile: list[int]) -> None:
     u = game.utilities(profile)
     between = utility_between(u, game.swarm_of)
     assert is_zero_sum_between(u, game.swarm_of)
@@ -140,7 +142,7 @@ def test_what_swarms_have_from_each_other_cancels(game: Meetings, profile: list[
 
 
 @given(meetings(), profiles, st.data())
-def test_theorem_13_is_the_definition(game: Meetings, profile: list[int], data: st.DataObject) -> None:
+def test_theorem_13_equals_the_definition(game: Meetings, profile: list[int], data: st.DataObject) -> None:
     swarm_of = np.array(game.swarm_of)
     player = data.draw(st.integers(0, len(swarm_of) - 1))
     k = swarm_of[player]
@@ -163,7 +165,7 @@ def test_theorem_13_is_the_definition(game: Meetings, profile: list[int], data: 
 
 
 @given(meetings(), profiles, st.data())
-def test_a_player_alone_changes_its_wlu_as_much_as_sud(
+def test_a_unilateral_change_has_the_same_effect_on_wlu_and_sud(
     game: Meetings, profile: list[int], data: st.DataObject
 ) -> None:
     player = data.draw(st.integers(0, len(game.swarm_of) - 1))
@@ -175,9 +177,7 @@ def test_a_player_alone_changes_its_wlu_as_much_as_sud(
 
 
 @given(meetings(most_swarms=2), profiles)
-def test_sud_is_a_potential_of_wlu_and_for_a_lone_player_not_of_its_utility(
-    game: Meetings, profile: list[int]
-) -> None:
+def test_sud_is_a_potential_of_wlu_but_not_of_the_own_utility(game: Meetings, profile: list[int]) -> None:
     members = [i for i, swarm in enumerate(game.swarm_of) if swarm == 0]
     shape = (ACTIONS,) * len(members)
     sud, wlu, own = np.zeros(shape), np.zeros((len(members), *shape)), np.zeros((len(members), *shape))
@@ -191,7 +191,7 @@ def test_sud_is_a_potential_of_wlu_and_for_a_lone_player_not_of_its_utility(
             wlu[(m, *actions)] = game.wlu(at, i)
             own[(m, *actions)] = utilities[i]
     assert is_potential(sud, list(wlu))
-    # A swarm of one: W changes by 2 u_ρ^m, its own utility by u_ρ^m.
+    # For a swarm of one robot, W changes by 2 u_ρ^m and its own utility by u_ρ^m.
     if len(members) == 1:
         assert is_potential(sud, list(own)) == (np.ptp(own[0]) == 0)
 
@@ -204,7 +204,7 @@ forms = arrays(np.int64, (2, 3), elements=st.integers(-9, 9)).map(
 
 
 @given(st.dictionaries(st.integers(1, 6), forms, min_size=1, max_size=4))
-def test_a_tree_folds_into_the_games_it_was_made_of(games: dict[int, NormalForm]) -> None:
+def test_fold_is_the_inverse_of_extensive_form(games: dict[int, NormalForm]) -> None:
     folded = fold(extensive_form(games))
     assert list(folded) == list(games)
     for swarm, form in folded.items():

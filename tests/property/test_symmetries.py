@@ -1,4 +1,4 @@
-"""Outcomes of a period do not depend on the order of the robots, and are mirrored in a mirrored state."""
+"""Outcomes of a period do not depend on the order of robots; a mirrored state has the mirrored outcome."""
 
 import math
 
@@ -18,10 +18,10 @@ STRIDE = 0.015
 
 def assert_permuted(scene: Scene, image: Scene, order: Integers) -> None:
     """Check that robot k of the image behaves as robot ``order[k]`` of the scene."""
-    told, image_told = play_period(scene), play_period(image)
-    assert {(order[robot], kind) for robot, kind in image_told} == set(told)
-    for (robot, kind), (other, *rest) in image_told.items():
-        assert (order[other] if kind == CONFLICT else other, *rest) == told[order[robot], kind]
+    events, image_events = play_period(scene), play_period(image)
+    assert {(order[robot], kind) for robot, kind in image_events} == set(events)
+    for (robot, kind), (other, *rest) in image_events.items():
+        assert (order[other] if kind == CONFLICT else other, *rest) == events[order[robot], kind]
     np.testing.assert_allclose(image.states.positions, scene.states.positions[order], rtol=0, atol=1e-9)
     assert (image.states.robots["heading"] == scene.states.robots["heading"][order]).all()
 
@@ -36,13 +36,13 @@ def test_the_order_of_robots_has_no_effect(scene: Scene, seed: int) -> None:
 
 
 def assert_mirrored(scene: Scene, image: Scene) -> None:
-    """Check that two scenes end as each other's mirror image."""
-    told, image_told = play_period(scene), play_period(image)
-    assert set(image_told) == set(told)
-    for key, (other, active, vacant, angle) in image_told.items():
+    """Check that the outcome of `image` is the mirror image of that of `scene`."""
+    events, image_events = play_period(scene), play_period(image)
+    assert set(image_events) == set(events)
+    for key, (other, active, vacant, angle) in image_events.items():
         sensors = sum(1 << (-s % SENSORS) for s in range(SENSORS) if vacant >> s & 1)
-        assert (other, active, sensors) == told[key][:3]
-        assert math.remainder(angle + told[key][3], 2 * math.pi) == pytest.approx(0, abs=1e-9)
+        assert (other, active, sensors) == events[key][:3]
+        assert math.remainder(angle + events[key][3], 2 * math.pi) == pytest.approx(0, abs=1e-9)
     np.testing.assert_allclose(image.states.positions, scene.states.positions * (-1, 1), rtol=0, atol=1e-9)
     turned = image.states.robots["heading"] + scene.states.robots["heading"] - math.pi
     np.testing.assert_allclose(np.sin(turned / 2), 0, atol=1e-9)

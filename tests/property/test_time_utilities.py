@@ -49,7 +49,7 @@ def test_two_groups_that_meet_are_zero_sum(ours: list[Interaction], theirs: list
 
 
 @given(interactions, some)
-def test_meeting_many_is_meeting_each(own: Interaction, others: list[Interaction]) -> None:
+def test_the_utility_of_a_meeting_is_the_sum_over_pairs(own: Interaction, others: list[Interaction]) -> None:
     pairs = [times.pair_utility(own, other) for other in others]
     size = sum(abs(times.time_utility(*other)) + 1e4 for other in others)
     assert times.inter_utility(own, others) == near(sum(pairs), size)
@@ -69,7 +69,7 @@ def test_a_mixed_meeting_is_the_sum_over_swarms(
 
 
 @given(interactions, some, some)
-def test_the_wlu_of_times_is_theorem_13(
+def test_the_wlu_of_times_equals_theorem_13(
     own: Interaction, mates: list[Interaction], opponents: list[Interaction]
 ) -> None:
     parts = (
@@ -93,7 +93,7 @@ def test_the_wlu_of_equal_times(crowd: Crowd, t_a: float, t_p: float) -> None:
 
 
 @given(st.lists(st.tuples(weights, weights), min_size=1, max_size=5), interactions, seconds, seconds)
-def test_equal_times_ask_for_means_of_weights_alone(
+def test_with_equal_times_only_the_means_of_weights_matter(
     theirs: list[tuple[float, float]], own: Interaction, t_a: float, t_p: float
 ) -> None:
     opponents = [Interaction(t_a, t_p, alpha, beta) for alpha, beta in theirs]
@@ -103,7 +103,7 @@ def test_equal_times_ask_for_means_of_weights_alone(
     assert times.wlu_of_equal_times(crowd, t_a, t_p) == near(of_times, 1e5)
 
 
-# What a robot can compute.
+# Estimates that a robot can compute.
 
 met = st.tuples(st.integers(0, 8), st.integers(0, 8)).filter(any)
 
@@ -136,7 +136,7 @@ def test_a_swarm_that_is_alone(
 
 
 @given(seconds, seconds, st.integers(0, 8), st.sampled_from((AWAY, TOWARDS)), st.booleans(), st.floats(0, 1))
-def test_rewards_are_the_equations(
+def test_rewards_equal_the_equations(
     t_a: float, t_p: float, n_active: int, direction: int, inter: bool, size: float
 ) -> None:
     sensed = (t_a, t_p, n_active, direction, inter, 1)

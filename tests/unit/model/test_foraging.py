@@ -8,7 +8,6 @@ import pytest
 
 from kswarms.agents.common.errors import InputError
 from kswarms.model.description.game import Game, Swarm
-from kswarms.model.description.parameters import PRESETS
 from kswarms.model.foraging import ForagingModel
 
 
@@ -42,26 +41,10 @@ def test_swarms_are_read_from_text(
 
 
 def test_the_other_arguments_reach_the_game() -> None:
-    model = ForagingModel(
-        layout="nearer-station",
-        body="krembot",
-        parameters="argos, friction=0.2",
-        duration=30.0,
-        side=1.5,
-        puck_limit=5,
-        supply=7,
-        seed=12,
-    )
-    assert model.game == Game(
-        swarms=(Swarm(policy="avoid", size=10), Swarm(policy="attack", size=10)),
-        layout="nearer-station",
-        body="krembot",
-        parameters=PRESETS["argos"].replace(friction=0.2),
-        duration=30.0,
-        side=1.5,
-        puck_limit=5,
-        supply=7,
-    )
+    fields = {"layout": "nearer-station", "body": "krembot", "parameters": "argos, friction=0.2"}
+    fields |= {"duration": 30.0, "side": 1.5, "puck_limit": 5, "supply": 7}
+    model = ForagingModel(**fields, seed=12)
+    assert model.game == Game(swarms=ForagingModel().game.swarms, **fields)
     assert model.seed == 12
     assert model.supply == [7, 7]
 

@@ -1,4 +1,4 @@
-"""Where robots start: at random, apart from each other and the walls (section 3.1)."""
+"""Starting places of robots: random, apart from each other and the walls (section 3.1)."""
 
 import math
 
@@ -39,7 +39,7 @@ def test_other_seeds_give_other_places() -> None:
 
 
 def test_places_and_headings_are_uniform() -> None:
-    # First robots only: each is placed as if alone.
+    # The first robot of a game is placed independently of the others.
     starts = [start_poses(1, seed, 1.0, RADIUS, CLEARANCE, WALL_CLEARANCE) for seed in range(1000)]
     limit = 1.0 - RADIUS - WALL_CLEARANCE
     for draws, width in (

@@ -1,4 +1,4 @@
-"""Where stations and bases are (section 2.1)."""
+"""Places of stations and bases (section 2.1)."""
 
 import math
 
@@ -25,10 +25,6 @@ def test_the_symmetric_arena_of_two_swarms() -> None:
     assert (arena.station_radius, arena.base_radius) == (STATION_RADIUS, BASE_RADIUS)
 
 
-def test_one_swarm_is_at_the_left() -> None:
-    assert build(swarms=1).bases.tolist() == [[-0.8, 0.0]]
-
-
 def test_the_nearer_station_has_the_given_distances() -> None:
     arena = build("nearer-station")
     upper, lower = arena.stations
@@ -45,7 +41,8 @@ def distance_sums(swarms: int) -> list[float]:
     return [sum(math.dist(base, station) for station in arena.stations) for base in arena.bases]
 
 
-def test_three_swarms() -> None:
+def test_bases_of_one_and_of_three_swarms() -> None:
+    assert base_positions(1).tolist() == [[-0.8, 0.0]]
     first, second, third = base_positions(3)
     assert tuple(second) == (0.8, 0.0)
     assert first == pytest.approx((-0.788, 0.18), abs=5e-4)
@@ -60,7 +57,7 @@ def test_every_base_has_the_same_sum_of_distances_to_the_stations(swarms: int) -
 
 @pytest.mark.parametrize("swarms", range(1, 7))
 @pytest.mark.parametrize("layout", ["symmetric", "random-stations"])
-def test_nothing_overlaps_and_all_is_inside(swarms: int, layout: str) -> None:
+def test_places_do_not_overlap_and_are_inside(swarms: int, layout: str) -> None:
     for seed in range(10 if layout == "random-stations" else 1):
         arena = build(layout, swarms, seed=seed)
         discs = [(base, BASE_RADIUS) for base in arena.bases]
@@ -91,7 +88,7 @@ def test_random_stations_depend_on_the_seed() -> None:
 def test_random_stations_are_uniform() -> None:
     stations = np.concatenate([build("random-stations", seed=seed).stations for seed in range(300)])
     assert np.abs(stations).max() <= 1 - STATION_RADIUS
-    # In each quadrant a quarter of them, within four standard deviations.
+    # A quarter is in each quadrant, within four standard deviations.
     quadrants = np.bincount((stations[:, 0] > 0) * 2 + (stations[:, 1] > 0), minlength=4)
     assert quadrants == pytest.approx([150] * 4, abs=4 * math.sqrt(600 * 0.25 * 0.75))
 

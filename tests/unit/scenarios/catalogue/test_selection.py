@@ -7,20 +7,16 @@ from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.catalogue.selection import select_scenarios, with_densities_and_seeds
 
 
-def test_scenarios_keep_the_order_of_the_ids_and_are_unique() -> None:
-    assert [each.id for each in select_scenarios(["fig-7.1", "fig-6.4b", "fig-7.1"])] == [
-        "fig-7.1",
-        "fig-6.4b",
-    ]
-
-
-def test_a_table_stands_for_its_figures() -> None:
-    assert [each.id for each in select_scenarios(["table-6.1"])] == ["fig-6.4a", "fig-6.4b"]
-    assert [each.id for each in select_scenarios(["fig-6.4b", "table-6.2", "table-6.1"])] == [
-        "fig-6.4b",
-        "fig-6.8",
-        "fig-6.4a",
-    ]
+@pytest.mark.parametrize(
+    ("names", "ids"),
+    [
+        (["fig-7.1", "fig-6.4b", "fig-7.1"], ["fig-7.1", "fig-6.4b"]),
+        (["table-6.1"], ["fig-6.4a", "fig-6.4b"]),
+        (["fig-6.4b", "table-6.2", "table-6.1"], ["fig-6.4b", "fig-6.8", "fig-6.4a"]),
+    ],
+)
+def test_scenarios_are_unique_and_in_the_order_of_the_ids(names: list[str], ids: list[str]) -> None:
+    assert [scenario.id for scenario in select_scenarios(names)] == ids
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Games with a learning phase, and absent robots: how tests play them and what always adds up."""
+"""Games for tests: construction, playing, and checks that hold for every game."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ ALL_TABLES = "conflicts,robots,trajectory"
 
 
 def make_game(*policies: str, size: int = 6, **fields: Any) -> Game:
-    """Return a game of equal swarms, one per policy."""
+    """Return a game of equally large swarms, one per policy."""
     return Game(swarms=tuple(Swarm(policy=policy, size=size) for policy in policies), **fields)
 
 
