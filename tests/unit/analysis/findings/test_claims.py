@@ -1,7 +1,6 @@
 """Findings as data: valid and invalid TOML files, and the findings of the thesis."""
 
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 import pytest
@@ -34,18 +33,17 @@ between = [30, 40]
 """
 
 
-@pytest.fixture
-def write(tmp_path: Path) -> Any:
-    def write(text: str) -> Path:
-        path = tmp_path / "mine.toml"
-        path.write_text(text, encoding="utf-8")
-        return path
-
-    return write
+TREND = HEAD + 'kind = "trend"\nquantity = { scenario = "a", '
 
 
-def test_a_user_defined_finding_is_loaded(write: Any) -> None:
-    (finding,) = read_findings(write(HEAD + COMPARE + "margin = 2\n"))
+def write(folder: Path, text: str) -> Path:
+    path = folder / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_user_defined_finding_is_loaded(tmp_path: Path) -> None:
+    (finding,) = read_findings(write(tmp_path, HEAD + COMPARE + "margin = 2\n"))
     assert (finding.id, finding.source, finding.confidence) == ("mine", "", 0.95)
     assert finding.scenarios == ("a", "b")
     assert finding.claim == Compare(
@@ -86,19 +84,19 @@ def test_a_finding_can_be_changed() -> None:
             r"quantity\.measure='pucks': must be one of learned_attack, learned_flight_within",
         ),
         (
-            HEAD + 'kind = "trend"\nquantity = { scenario = "a", measure = "speed" }',
+            TREND + 'measure = "speed" }',
             rf"quantity\.measure='speed': must be one of {', '.join(UNITS)}",
         ),
         (
-            HEAD + 'kind = "trend"\nquantity = { scenario = "a", measure = "learned_attack" }',
+            TREND + 'measure = "learned_attack" }',
             r"quantity\.swarm=None: must be given: learned_attack is of one swarm",
         ),
         (
-            HEAD + 'kind = "trend"\nquantity = { scenario = "a", measure = "sud" }',
+            TREND + 'measure = "sud" }',
             r"quantity\.swarm=None: must be given: sud does not add up",
         ),
         (
-            HEAD + 'kind = "trend"\nquantity = { scenario = "a", opponent = 2 }',
+            TREND + "opponent = 2 }",
             r"quantity\.opponent=2: must be left out: only learned_attack has one",
         ),
         (
@@ -116,9 +114,9 @@ def test_a_finding_can_be_changed() -> None:
         ),
     ],
 )
-def test_invalid_findings_are_refused(write: Any, text: str, complaint: str) -> None:
+def test_invalid_findings_are_refused(tmp_path: Path, text: str, complaint: str) -> None:
     with pytest.raises(InputError, match=complaint):
-        read_findings(write(text))
+        read_findings(write(tmp_path, text))
 
 
 def test_an_unreadable_file_is_refused(tmp_path: Path) -> None:
@@ -146,35 +144,15 @@ def test_each_measure_is_read_from_the_results() -> None:
     row = {"scenario": "a", "condition": "", "n": 6, "seed": 0, "swarm": 1, "size": 3, "pucks": 7, "sud": -2}
     row |= {"t_a_intra": 30.0, "t_a_inter": 60.0, "t_p": 210.0, "conflicts_intra": 4, "conflicts_inter": 9}
     row |= {"duration": 100.0}
-    of_others = {
-        "scenario": "a",
-        "condition": "",
-        "n": 6,
-        "seed": 0,
-        "swarm": 1,
-        "opponent": 2,
-        "attack_share": 0.25,
-    }
-    policies = pd.DataFrame([of_others, {**of_others, "opponent": 1, "attack_share": 0.1}])
-    results = Results(pd.DataFrame([row]), policies)
-    found = {
-        measure: sample(results, Quantity(measure=measure, scenario="a", swarm=1)).loc[0, 6]
-        for measure in UNITS
-    }
-    assert found == pytest.approx(
-        {
-            "pucks": 7,
-            "sud": -2,
-            "duration": 100,
-            "time_in_conflict": 30,
-            "time_inter": 20,
-            "time_intra": 10,
-            "conflicts_inter": 9,
-            "conflicts_intra": 4,
-            "learned_attack": 25,
-            "learned_flight_within": 90,
-        }
-    )
+    shares = [{"opponent": 2, "attack_share": 0.25}, {"opponent": 1, "attack_share": 0.1}]
+    results = Results(pd.DataFrame([row]), pd.DataFrame([row | share for share in shares]))
+    expected = {"pucks": 7, "sud": -2, "duration": 100, "time_in_conflict": 30, "time_inter": 20}
+    expected |= {"time_intra": 10, "conflicts_inter": 9, "conflicts_intra": 4}
+    expected |= {"learned_attack": 25, "learned_flight_within": 90}
+    assert expected.keys() == UNITS.keys()
+    for measure, value in expected.items():
+        found = sample(results, Quantity(measure=measure, scenario="a", swarm=1))
+        assert found.loc[0, 6] == pytest.approx(value), measure
 
 
 def test_a_learned_measure_without_policies_has_no_samples() -> None:
@@ -183,7 +161,7 @@ def test_a_learned_measure_without_policies_has_no_samples() -> None:
     assert sample(Results(pd.DataFrame([row])), quantity).empty
 
 
-def test_a_finding_from_a_file_is_judged(write: Any) -> None:
+def test_a_finding_from_a_file_is_judged(tmp_path: Path) -> None:
     rows = [
         {"scenario": scenario, "condition": "", "n": 20, "seed": seed, "swarm": 1, "pucks": pucks + seed % 3}
         | {"t_a_intra": 1.0, "t_a_inter": 1.0, "t_p": 1.0, "conflicts_intra": 1, "conflicts_inter": 1}
@@ -191,6 +169,6 @@ def test_a_finding_from_a_file_is_judged(write: Any) -> None:
         for scenario, pucks in (("a", 20), ("b", 10))
         for seed in range(8)
     ]
-    (finding,) = read_findings(write(HEAD + COMPARE))
+    (finding,) = read_findings(write(tmp_path, HEAD + COMPARE))
     verdict = judge(finding, Results(pd.DataFrame(rows)))
     assert (verdict.verdict, verdict.effect, verdict.unit) == (HOLDS, 10.0, "pucks")

@@ -26,9 +26,8 @@ from tests.helpers.contribution_rows import ROBOTS, SEEDS, contribution_rows, no
 
 
 def test_a_contribution_is_sud_less_sud_without() -> None:
-    rows = of_question(
-        contribution_rows(sud=7, sud_without=[[3] * 4 + [9] * 4], time_sud=1.5, time_sud_without=2.0)
-    )
+    suds = {"sud": 7, "sud_without": [[3] * 4 + [9] * 4], "time_sud": 1.5, "time_sud_without": 2.0}
+    rows = of_question(contribution_rows(**suds))
     assert set(rows["pucks"]) == {4.0, -2.0}
     assert set(rows["time"]) == {-0.5}
     assert set(rows["reward_rate"]) == {0.1}
@@ -57,17 +56,15 @@ def test_means_have_bootstrap_intervals_over_the_seeds() -> None:
 
 
 def test_each_swarm_has_its_own_mean_robot() -> None:
-    found = mean_contributions(
-        of_question(pd.concat([contribution_rows(swarm=1, sud=3), contribution_rows(swarm=2, sud=-1)]))
-    )
+    both = pd.concat([contribution_rows(swarm=1, sud=3), contribution_rows(swarm=2, sud=-1)])
+    found = mean_contributions(of_question(both))
     assert found[found["robot"] < 0][["swarm", "pucks"]].to_numpy().tolist() == [[1, 3.0], [2, -1.0]]
 
 
 @pytest.mark.parametrize("seeds", [1, 5])
 def test_fewer_than_six_seeds_have_no_interval(seeds: int) -> None:
-    rows = of_question(
-        contribution_rows(seeds=seeds, time_sud=noise(shape=(seeds, ROBOTS)), reward=np.arange(8.0))
-    )
+    sud = noise(shape=(seeds, ROBOTS))
+    rows = of_question(contribution_rows(seeds=seeds, time_sud=sud, reward=np.arange(8.0)))
     assert mean_contributions(rows)[["time_low", "time_high", "reward_low"]].isna().all(axis=None)
     found = rank_correlations(rows).set_index("measure").loc["time"]
     assert not np.isnan(found["robots"])
@@ -91,9 +88,8 @@ def test_spearman_agrees_with_scipy(seed: int, values: int, robots: int) -> None
 @pytest.mark.parametrize("sign", [1, -1])
 def test_rewards_in_the_order_of_contributions_have_rank_correlation_1(sign: int) -> None:
     true = np.exp(np.arange(ROBOTS) / 2)
-    rows = of_question(
-        contribution_rows(time_sud=true + noise(0.1), reward=sign * true**3 + noise(0.1, seed=1))
-    )
+    reward = sign * true**3 + noise(0.1, seed=1)
+    rows = of_question(contribution_rows(time_sud=true + noise(0.1), reward=reward))
     found = rank_correlations(rows).set_index("measure").loc["time"]
     assert found["robots"] == found["robots_low"] == found["robots_high"] == pytest.approx(sign)
     assert sign * found["games"] > 0.9
@@ -104,9 +100,8 @@ def test_a_correlation_within_games_is_not_one_of_the_means() -> None:
     """Rewards follow the chance of each game, but no robot is better than another."""
     chance = noise(1.0)
     chance -= chance.mean(axis=0)  # all means over the seeds are 0
-    rows = of_question(
-        contribution_rows(time_sud=chance + noise(0.01, seed=3), reward=chance + noise(0.01, seed=2))
-    )
+    sud, reward = chance + noise(0.01, seed=3), chance + noise(0.01, seed=2)
+    rows = of_question(contribution_rows(time_sud=sud, reward=reward))
     found = rank_correlations(rows).set_index("measure").loc["time"]
     assert found["games"] > 0.95
     assert abs(found["robots"]) < 0.9  # the means are noise
@@ -142,15 +137,9 @@ def test_missing_measures_are_left_out() -> None:
 @pytest.mark.parametrize("share", [1.0, 0.0, 0.4, -0.3])
 def test_the_share_of_conflict_time_that_becomes_program_time(share: float) -> None:
     met = 50.0 + noise(5.0)
-    rows = of_question(
-        contribution_rows(
-            mates_t_a=300.0,
-            mates_t_a_without=300.0 - share * met,
-            mates_t_p=900.0,
-            mates_t_p_without=900.0 + share * met,
-            mates_t_a_met=met,
-        )
-    )
+    times = {"mates_t_a": 300.0, "mates_t_a_without": 300.0 - share * met, "mates_t_a_met": met}
+    times |= {"mates_t_p": 900.0, "mates_t_p_without": 900.0 + share * met}
+    rows = of_question(contribution_rows(**times))
     found = assumption(rows).set_index("others").loc["mates"]
     assert found[["share", "share_low", "share_high"]].tolist() == pytest.approx([share] * 3)
     assert found["met"] == pytest.approx(met.mean())
@@ -181,17 +170,10 @@ def test_without_others_or_meetings_there_is_no_share() -> None:
 
 
 def test_sud_in_time_utility_is_that_of_the_measured_game() -> None:
-    conflicts: dict[str, list[Any]] = {
-        "phase": ["learning", "game", "game"],
-        "robot": [0, 0, 1],
-        "swarm": [1, 1, 2],
-        "opponent_swarm": [2, 2, 1],
-        "start": [0.0, 10.0, 11.0],
-        "t_a": [2.0, 2.0, 3.0],
-        "t_p": [5.0, 6.0, 4.0],
-        "seen": [((), (1,)), ((), (1,)), ((0,), ())],
-        "active": [1, 1, 1],
-    }
+    conflicts: dict[str, list[Any]] = {"phase": ["learning", "game", "game"], "robot": [0, 0, 1]}
+    conflicts |= {"swarm": [1, 1, 2], "opponent_swarm": [2, 2, 1], "start": [0.0, 10.0, 11.0]}
+    conflicts |= {"t_a": [2.0, 2.0, 3.0], "t_p": [5.0, 6.0, 4.0], "active": [1, 1, 1]}
+    conflicts["seen"] = [((), (1,)), ((), (1,)), ((0,), ())]
     found = time_sud(conflicts, 2)
     expected = utilities_by_swarm(robot_utilities(pd.DataFrame(conflicts)))
     assert found == pytest.approx(expected["sud"].tolist())

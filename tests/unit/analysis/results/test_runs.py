@@ -10,6 +10,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.results.runs import read_policies, read_results, read_runs
 
 RUNS_TEXT, RUNS_NUMBERS = names("runs", "text"), names("runs", "integer", "real")
+READERS = {"runs": read_runs, "policies": read_policies}
 POLICIES_TEXT, POLICIES_NUMBERS = names("policies", "text"), names("policies", "integer", "real")
 
 
@@ -34,29 +35,26 @@ def test_categorical_text_is_read_as_text(tmp_path: Path, runs: pd.DataFrame) ->
     assert list(scenario) == ["a", ""]
 
 
-def test_a_missing_directory_is_refused(tmp_path: Path) -> None:
+def test_a_missing_directory_or_file_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"absent.*must be a directory that `kswarms run` wrote"):
         read_runs(tmp_path / "absent")
+    for name, read in READERS.items():
+        with pytest.raises(InputError, match=rf"must be a directory that holds {name}\.parquet"):
+            read(tmp_path)
 
 
-def test_a_directory_without_runs_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"must be a directory that holds runs\.parquet"):
-        read_runs(tmp_path)
-
-
-@pytest.mark.parametrize("content", [b"", b"not Parquet at all", b"PAR1" + bytes(100) + b"PAR1"])
-def test_a_file_in_another_format_is_refused(tmp_path: Path, content: bytes) -> None:
-    (tmp_path / "runs.parquet").write_bytes(content)
-    with pytest.raises(InputError, match="must be a readable Parquet file"):
-        read_runs(tmp_path)
-
-
-def test_a_truncated_file_is_refused(tmp_path: Path, runs: pd.DataFrame) -> None:
-    path = tmp_path / "runs.parquet"
-    runs.to_parquet(path)
-    path.write_bytes(path.read_bytes()[:-20])
-    with pytest.raises(InputError, match="must be a readable Parquet file"):
-        read_runs(tmp_path)
+def test_a_damaged_file_is_refused(tmp_path: Path, runs: pd.DataFrame) -> None:
+    runs.to_parquet(tmp_path / "runs.parquet")
+    truncated = (tmp_path / "runs.parquet").read_bytes()[:-20]
+    damaged = (b"", b"not Parquet at all", b"PAR1" + bytes(100) + b"PAR1", truncated)
+    for content in damaged:
+        for name, read in READERS.items():
+            (tmp_path / f"{name}.parquet").write_bytes(content)
+            with pytest.raises(InputError, match=rf"{name}\.parquet': must be a readable Parquet file"):
+                read(tmp_path)
+    runs.to_parquet(tmp_path / "runs.parquet")
+    with pytest.raises(InputError, match=r"policies\.parquet': must be a readable Parquet file"):
+        read_results(tmp_path)
 
 
 @pytest.mark.parametrize("name", [*RUNS_TEXT, *RUNS_NUMBERS])
@@ -92,33 +90,17 @@ def test_policies_are_checked_against_their_own_columns(tmp_path: Path) -> None:
     policies = policies.assign(**{name: ["a", ""] for name in POLICIES_TEXT})
     policies.to_parquet(tmp_path / "policies.parquet")
     assert list(read_policies(tmp_path)["attack_share"]) == [0.5, 1.0]
-    with pytest.raises(InputError, match=r"must be a directory that holds runs\.parquet"):
-        read_runs(tmp_path)
     for name in (*POLICIES_TEXT, *POLICIES_NUMBERS):
         policies.drop(columns=name).to_parquet(tmp_path / "policies.parquet")
         with pytest.raises(InputError, match=f"policies.*must have the missing columns {name}$"):
             read_policies(tmp_path)
 
 
-def test_a_directory_without_policies_has_none_to_read(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"must be a directory that holds policies\.parquet"):
-        read_policies(tmp_path)
-
-
 def test_results_are_both_tables(tmp_path: Path, runs: pd.DataFrame) -> None:
     runs.to_parquet(tmp_path / "runs.parquet")
     assert read_results(tmp_path).policies is None
-    policies = pd.DataFrame(
-        {name: ["a"] for name in POLICIES_TEXT} | {name: [1] for name in POLICIES_NUMBERS}
-    )
-    policies.to_parquet(tmp_path / "policies.parquet")
+    columns = {name: ["a"] for name in POLICIES_TEXT} | {name: [1] for name in POLICIES_NUMBERS}
+    pd.DataFrame(columns).to_parquet(tmp_path / "policies.parquet")
     results = read_results(tmp_path)
     assert results.policies is not None
     assert (len(results.runs), len(results.policies)) == (2, 1)
-
-
-def test_damaged_policies_are_refused(tmp_path: Path, runs: pd.DataFrame) -> None:
-    runs.to_parquet(tmp_path / "runs.parquet")
-    (tmp_path / "policies.parquet").write_bytes(b"not Parquet at all")
-    with pytest.raises(InputError, match="must be a readable Parquet file"):
-        read_results(tmp_path)

@@ -18,18 +18,9 @@ Column = tuple[str, str, int]  # scenario, condition, opponent of S2
 def policies(shares: Mapping[Column, Mapping[int, Sequence[float]]]) -> pd.DataFrame:
     """Return rows of S2 with these shares of attack (one for each seed), by column and density."""
     return pd.DataFrame(
-        {
-            "run": f"{scenario}-{condition}-{n}-{seed}",
-            "scenario": scenario,
-            "condition": condition,
-            "n": n,
-            "seed": seed,
-            "swarm": 2,
-            "opponent": opponent,
-            "action": action,
-            "share": share,
-            "attack_share": attack,
-        }
+        {"run": f"{scenario}-{condition}-{n}-{seed}", "scenario": scenario, "condition": condition, "n": n}
+        | {"seed": seed, "swarm": 2, "opponent": opponent}
+        | {"action": action, "share": share, "attack_share": attack}
         for (scenario, condition, opponent), by_density in shares.items()
         for n, attacks in by_density.items()
         for seed, attack in enumerate(attacks)
@@ -67,14 +58,9 @@ def test_a_share_counts_once_for_any_number_of_actions() -> None:
 
 
 def test_published_numbers_match_figure_density_and_kind() -> None:
-    made = policies(
-        {
-            ("fig-6.8", "", 2): {26: [0.0]},
-            ("fig-6.8", "", 1): {26: [0.2], 28: [0.2]},
-            ("fig-6.4a", "", 1): {26: [0.5]},
-        }
-    )
-    cells = learned_shares(made, ["fig-6.8", "fig-6.4a"])
+    shares: dict[Column, Mapping[int, Sequence[float]]] = {("fig-6.8", "", 2): {26: [0.0]}}
+    shares |= {("fig-6.8", "", 1): {26: [0.2], 28: [0.2]}, ("fig-6.4a", "", 1): {26: [0.5]}}
+    cells = learned_shares(policies(shares), ["fig-6.8", "fig-6.4a"])
     shown = cells[["scenario", "learned", "n", "published"]].to_numpy().tolist()
     assert shown[0] == ["fig-6.8", "attack", 26, 15.7]
     assert shown[1][:3] == ["fig-6.8", "attack", 28]
@@ -111,20 +97,11 @@ def test_scenarios_without_learners_are_refused() -> None:
 
 
 def test_the_table_shows_published_beside_measured_numbers() -> None:
-    made = policies(
-        {
-            ("fig-6.4a", "", 1): {6: [0.0] * 6, 26: [0.4] * 3 + [0.6] * 3},
-            ("fig-6.4b", "", 1): {26: [0.13] * 6},
-        }
-    )
+    both = {6: [0.0] * 6, 26: [0.4] * 3 + [0.6] * 3}, {26: [0.13] * 6}
+    made = policies({("fig-6.4a", "", 1): both[0], ("fig-6.4b", "", 1): both[1]})
     table = learned_table(learned_shares(made, ["fig-6.4a", "fig-6.4b"]))
-    assert table.header == [
-        "N",
-        "fig-6.4a\npublished",
-        "fig-6.4a\nmeasured",
-        "fig-6.4b\npublished",
-        "fig-6.4b\nmeasured",
-    ]
+    of_curves = (f"{name}\n{kind}" for name in ("fig-6.4a", "fig-6.4b") for kind in ("published", "measured"))
+    assert table.header == ["N", *of_curves]
     assert table.rows == [
         ["6", "1.6", "0.0 (0.0 … 0.0)", "–", "–"],
         ["26", "31.9", "50.0 (40.0 … 60.0)", "3.0", "13.0 (13.0 … 13.0)"],
@@ -146,12 +123,8 @@ def test_the_table_without_published_numbers() -> None:
 def test_columns_are_named_by_what_differs() -> None:
     made = policies({("fig-6.8", "", 1): {6: [0.5] * 3}, ("fig-6.8", "", 2): {6: [0.0] * 2}})
     table = learned_table(learned_shares(made, ["fig-6.8"]))
-    assert [heading.splitlines()[0] for heading in table.header[1:]] == [
-        "attack",
-        "attack",
-        "flight within",
-        "flight within",
-    ]
+    names = [heading.splitlines()[0] for heading in table.header[1:]]
+    assert names == ["attack", "attack", "flight within", "flight within"]
     assert "mean of 2 to 3 seeds" in table.caption
     assert "attack 50.0, flight within 0.0, all 2 cells 25.0" in table.caption
     alone = learned_table(learned_shares(made[made["opponent"] == 1], ["fig-6.8"]))
