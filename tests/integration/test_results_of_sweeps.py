@@ -10,12 +10,8 @@ from kswarms import Finding, ForagingModel, InputError, figure_of, judge, read_r
 from kswarms.analysis.report.report import build_report
 from kswarms.analysis.tables.scores import scores
 
-GAMES: dict[str, Any] = {
-    "n": [4, 8],
-    "policies": ["avoid,attack", "avoid,avoid"],
-    "seed": range(6),
-    "duration": 20.0,
-}
+POLICIES = ["avoid,attack", "avoid,avoid"]
+GAMES: dict[str, Any] = {"n": [4, 8], "policies": POLICIES, "seed": range(6), "duration": 20.0}
 
 
 def sweep(**parameters: Any) -> list[dict[str, Any]]:

@@ -83,22 +83,13 @@ def test_a_finding_can_be_changed() -> None:
             HEAD + 'kind = "share above"\nabove = 99\nquantity = { scenario = "a", swarm = 2 }',
             r"quantity\.measure='pucks': must be one of learned_attack, learned_flight_within",
         ),
-        (
-            TREND + 'measure = "speed" }',
-            rf"quantity\.measure='speed': must be one of {', '.join(UNITS)}",
-        ),
+        (TREND + 'measure = "speed" }', rf"quantity\.measure='speed': must be one of {', '.join(UNITS)}"),
         (
             TREND + 'measure = "learned_attack" }',
             r"quantity\.swarm=None: must be given: learned_attack is of one swarm",
         ),
-        (
-            TREND + 'measure = "sud" }',
-            r"quantity\.swarm=None: must be given: sud does not add up",
-        ),
-        (
-            TREND + "opponent = 2 }",
-            r"quantity\.opponent=2: must be left out: only learned_attack has one",
-        ),
+        (TREND + 'measure = "sud" }', r"quantity\.swarm=None: must be given: sud does not add up"),
+        (TREND + "opponent = 2 }", r"quantity\.opponent=2: must be left out: only learned_attack has one"),
         (
             HEAD + COMPARE.replace('"b"', '"b", measure = "time_inter"'),
             r"right\.measure='time_inter': must be in pucks, as the left is",

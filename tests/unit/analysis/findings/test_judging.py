@@ -208,9 +208,6 @@ def test_the_order_of_rows_does_not_matter() -> None:
         assert verdict_on(claim, shuffled) == verdict_on(claim, results)
 
 
-# ---------------------------------------------------------------------------------------- error rates
-
-
 @pytest.mark.slow
 def test_a_tie_fails_in_at_most_5_percent_of_cases() -> None:
     """The curves are equal: "at least as much at every N" is true, "more at every N" is false."""
@@ -224,9 +221,6 @@ def test_a_tie_fails_in_at_most_5_percent_of_cases() -> None:
         clearly.append(verdict_on(more(">"), Results(rows)).verdict)
     assert at_least.count(FAILS) <= stats.binom.ppf(0.999, 60, 0.05)
     assert clearly.count(HOLDS) == 0  # probability 1 / 40 at one density
-
-
-# ------------------------------------------------------------------------------------------- invalid results
 
 
 def test_duplicate_games_are_refused() -> None:
@@ -250,9 +244,6 @@ def test_an_opponent_must_be_named_among_several() -> None:
     for opponent, expected in ((1, HOLDS), (3, FAILS)):
         named = claim.replace(left=LEARNED.replace(opponent=opponent))
         assert verdict_on(named, results).verdict == expected
-
-
-# ------------------------------------------------------------------------------------------ findings, regions
 
 
 def test_findings_without_runs_have_no_data() -> None:

@@ -9,6 +9,7 @@ from kswarms.analysis.results.runs import Results
 from tests.helpers.made_up_results import BEHIND, FAR, S1, S2, TIE, duel, more, verdict_on
 
 BOTH = Quantity(scenario="duel")
+OVERTAKE = Overtake(ahead=S2, behind=S1, between=(16, 30))
 
 
 def test_a_verdict_at_every_density_shows_the_deciding_one() -> None:
@@ -45,17 +46,10 @@ def test_a_missing_density_is_named() -> None:
     assert (verdict.verdict, verdict.note.split("; ")[1]) == (HOLDS, "without N = 26")
 
 
-@pytest.mark.parametrize(
-    "claim",
-    [
-        more(),
-        more(over="mean over N"),
-        Overtake(ahead=S2, behind=S1, between=(16, 30)),
-        Peak(quantity=S2),
-        Trend(quantity=S2),
-    ],
-    ids=str,
-)
+CLAIMS = [more(), more(over="mean over N"), OVERTAKE, Peak(quantity=S2), Trend(quantity=S2)]
+
+
+@pytest.mark.parametrize("claim", CLAIMS, ids=str)
 def test_too_few_seeds_decide_nothing(claim: Claim) -> None:
     verdict = verdict_on(claim, duel([-9, 9, 99, 9, 9], seeds=4))
     assert (verdict.verdict, verdict.low, verdict.high, verdict.seeds) == (UNDECIDED, None, None, 4)
@@ -75,14 +69,11 @@ def test_a_single_seed_has_an_effect_without_interval() -> None:
 
 
 def test_an_uncertain_lead_at_either_end_is_noted() -> None:
-    verdict = verdict_on(Overtake(ahead=S2, behind=S1, between=(16, 30)), duel([1, 1, 1, 1, 0.5]))
+    verdict = verdict_on(OVERTAKE, duel([1, 1, 1, 1, 0.5]))
     assert (verdict.verdict, verdict.low, verdict.high) == (UNDECIDED, None, None)
     assert "possibly ahead from N = 6 on" in verdict.note
     assert "possibly not ahead at N = 50" in verdict.note
-    assert (
-        "the mean curves do not cross"
-        in verdict_on(Overtake(ahead=S2, behind=S1, between=(16, 30)), duel(FAR)).note
-    )
+    assert "the mean curves do not cross" in verdict_on(OVERTAKE, duel(FAR)).note
 
 
 def test_only_common_seeds_are_compared() -> None:

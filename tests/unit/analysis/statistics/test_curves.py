@@ -95,14 +95,11 @@ def test_rank_correlation_is_spearmans() -> None:
     )
 
 
-def test_a_rise_has_rank_correlation_1_and_noise_has_any_value() -> None:
+def test_a_rise_has_rank_correlation_1_noise_any_value_and_a_constant_0() -> None:
     rise = rank_correlation_with_n(DENSITIES, seeds_around([0, 10, 20, 30, 40], noise=0.1))
     assert rise == Interval(1.0, 1.0, 1.0)
     level = rank_correlation_with_n(DENSITIES, seeds_around([0.0, 0.1, 0.0, 0.1, 0.0]))
     assert level.low < 0 < level.high
-
-
-def test_a_constant_curve_has_rank_correlation_0() -> None:
     assert rank_correlation_with_n(DENSITIES, np.ones((8, 5))) == Interval(0.0, 0.0, 0.0)
 
 
