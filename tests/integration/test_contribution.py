@@ -33,10 +33,8 @@ def test_another_condition_is_kept_beside_the_first() -> None:
         options = ["--condition", condition, "--robots", "5", "--absent-from", "game", "--seeds", "1"]
         assert invoke(["contribution", "fig-6.12", *FEW, *options, "--out", "here"]) == 0
     rows = pq.read_table("here/contribution.parquet").to_pylist()
-    assert [(row["condition"], row["absent_from"]) for row in rows] == [
-        ("delta=0.25", "game"),
-        ("random", "game"),
-    ]
+    found = [(row["condition"], row["absent_from"]) for row in rows]
+    assert found == [("delta=0.25", "game"), ("random", "game")]
 
 
 @pytest.mark.parametrize(
@@ -47,7 +45,6 @@ def test_another_condition_is_kept_beside_the_first() -> None:
         ("fig-6.12 --condition dleta=0.02", "condition='dleta=0.02': must be one of 'delta=0.02', "),
         ("fig-6.4b --n 6 --robots 6", "robots='6': must be robots, 0 to 5, or swarms, S1, S2"),
         ("fig-6.4b --absent-from dinner", "absent_from='dinner': is not one of 'learning', 'game'\n"),
-        ("", "Missing argument 'ID'"),
     ],
 )
 def test_bad_input_is_one_line_and_nothing_is_written(

@@ -39,10 +39,9 @@ PATIENCE = 40.0
 @contextmanager
 def served(*arguments: str) -> Iterator[str]:
     """Start the command and yield the address that it prints."""
-    code = "from kswarms.scenarios.cli import main; main()"
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path)}
     server = subprocess.Popen(
-        [sys.executable, "-c", code, "explore", *arguments, "--no-browser", "--port", "0"],
+        [sys.executable, "-m", "kswarms.scenarios.cli", "explore", *arguments, "--no-browser", "--port", "0"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -74,38 +73,30 @@ class Browser:
     def __init__(self, address: str, size: tuple[int, int]) -> None:
         options = webdriver.ChromeOptions()
         options.binary_location = BROWSER
-        for argument in (
-            "--headless=new",
-            "--no-sandbox",
-            "--disable-dev-shm-usage",
-            "--disable-background-networking",
-        ):
-            options.add_argument(argument)
+        for argument in ("headless=new", "no-sandbox", "disable-dev-shm-usage", "disable-background-networking"):
+            options.add_argument(f"--{argument}")
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         self.driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
+        self.script = self.driver.execute_script
         self.driver.set_window_size(*size)
         self.driver.get(address)
         self.wait(lambda: self.all("[data-test=time]"))
 
     def all(self, selector: str, text: str = "") -> list[Any]:
         # In one script: elements that are queried one by one may be gone by then.
-        return list(
-            self.driver.execute_script(
-                "return [...document.querySelectorAll(arguments[0])]"
-                ".filter((element) => element.innerText.toLowerCase().includes(arguments[1].toLowerCase()))",
-                *(selector, text),
-            )
+        code = (
+            "return [...document.querySelectorAll(arguments[0])]"
+            ".filter((element) => element.innerText.toLowerCase().includes(arguments[1].toLowerCase()))"
         )
+        return list(self.script(code, selector, text))
 
     def text(self, selector: str, text: str = "") -> str:
         """Return the text of the first of `all`."""
-        return str(
-            self.driver.execute_script(
-                "return [...document.querySelectorAll(arguments[0])].map((element) => element.innerText)"
-                ".find((own) => own.includes(arguments[1])) || ''",
-                *(selector, text),
-            )
+        code = (
+            "return [...document.querySelectorAll(arguments[0])].map((element) => element.innerText)"
+            ".find((own) => own.includes(arguments[1])) || ''"
         )
+        return str(self.script(code, selector, text))
 
     def click(self, selector: str, text: str) -> None:
         self.wait(lambda: self.all(selector, text))
@@ -116,17 +107,15 @@ class Browser:
 
     def on_top(self, element: Any) -> bool:
         """Return whether no other element covers an element."""
-        return bool(
-            self.driver.execute_script(
-                "const box = arguments[0].getBoundingClientRect();"
-                "const [x, y] = [box.x + box.width / 2, box.y + Math.min(100, box.height / 2)];"
-                "return document.elementFromPoint(x, y) === arguments[0]",
-                element,
-            )
+        code = (
+            "const box = arguments[0].getBoundingClientRect();"
+            "const [x, y] = [box.x + box.width / 2, box.y + Math.min(100, box.height / 2)];"
+            "return document.elementFromPoint(x, y) === arguments[0]"
         )
+        return bool(self.script(code, element))
 
     def frames(self) -> int:
-        return int(self.driver.execute_script("return window.kswarmsFrames"))
+        return int(self.script("return window.kswarmsFrames"))
 
     def wait(self, condition: Callable[[], Any]) -> None:
         end = time.monotonic() + PATIENCE
@@ -136,11 +125,8 @@ class Browser:
 
     def complaints(self) -> list[str]:
         """Return the errors and warnings of the console."""
-        entries = [
-            entry["message"]
-            for entry in self.driver.get_log("browser")
-            if entry["level"] in ("SEVERE", "WARNING")
-        ]
+        log = self.driver.get_log("browser")
+        entries = [entry["message"] for entry in log if entry["level"] in ("SEVERE", "WARNING")]
         # One comes from solara: its navigator.vue has `modules.export` for `module.exports`.
         navigator = [entry for entry in entries if "Failed to evaluate Vue script and find module" in entry]
         assert len(navigator) <= 1
@@ -202,9 +188,8 @@ def test_the_page_plays_changes_and_shows_a_learner(browse: Callable[..., Browse
     canvas = browser.all("canvas")[0]
     selected = browser.text(".kswarms-table td", " of S")
     for x in range(-150, 151, 30):
-        webdriver.ActionChains(browser.driver).move_to_element_with_offset(
-            canvas, x, x // 2
-        ).click().perform()
+        mouse = webdriver.ActionChains(browser.driver)
+        mouse.move_to_element_with_offset(canvas, x, x // 2).click().perform()
     browser.wait(lambda: browser.text(".kswarms-table td", " of S") != selected)
 
     assert browser.complaints() == []

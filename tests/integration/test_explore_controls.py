@@ -24,9 +24,8 @@ def test_learning_can_be_skipped_and_its_controls_change_it(show: Callable[[str]
     wait(lambda: "Skip learning" not in shown.texts())
     shown.find(ipyvuetify.Slider, "Δ = 0.125").v_model = 0.2
     shown.find(ipyvuetify.Slider, f"γ = {UCB().gamma:g}").v_model = 0.5
-    assert session.player.game.swarms[1].policy == (
-        "inter-learner(reward='wlu(delta=0.2)', rule='ucb(gamma=0.5)')"
-    )
+    policy = "inter-learner(reward='wlu(delta=0.2)', rule='ucb(gamma=0.5)')"
+    assert session.player.game.swarms[1].policy == policy
     shown.find(ipyvuetify.Select, "Reward").v_model = "individual"
     shown.find(ipyvuetify.Select, "Selection rule").v_model = "greedy"
     assert session.player.game.swarms[1].policy == "inter-learner(reward='individual', rule='greedy')"
@@ -77,6 +76,8 @@ def test_every_control_changes_the_game(show: Callable[[str], Shown]) -> None:
     shown.find(ipyvuetify.Combobox, "Scenario").v_model = "fig-6.1a"
     assert session.conditions.keys() == {""}
     assert session.player.game.swarms[1].policy == "avoid"
+    shown.find(ipyvuetify.Combobox, "Scenario").v_model = None
+    assert "id='': must be a scenario" in shown.texts()
 
 
 def test_the_world_can_be_changed_by_sliders_and_text(show: Callable[[str], Shown]) -> None:
@@ -93,8 +94,8 @@ def test_the_world_can_be_changed_by_sliders_and_text(show: Callable[[str], Show
     shown.write("Pucks that end the game", 3)
     shown.write("Pucks at each station", 9)
     game = session.player.game
-    assert (game.layout, game.side, game.duration) == ("nearer-station", 3.0, 20.0)
-    assert (game.puck_limit, game.supply) == (3, 9)
+    assert (game.layout, game.side, game.duration, game.puck_limit) == ("nearer-station", 3.0, 20.0, 3)
+    assert game.supply == 9
     shown.write("Parameters", "fited")
     assert "parameters='fited': must begin with one of fitted, argos" in shown.texts()
     assert session.player.game == game
@@ -103,13 +104,3 @@ def test_the_world_can_be_changed_by_sliders_and_text(show: Callable[[str], Show
     shown.find(ipyvuetify.Select, "Body").v_model = "krembot"
     assert "must begin" not in shown.texts()
     assert session.player.game.body.name == "krembot"
-
-
-def test_an_invalid_value_is_one_line_on_the_page(show: Callable[[str], Shown]) -> None:
-    shown = show("fig-6.1c")
-    shown.find(ipyvuetify.Combobox, "S2: policy").v_model = "atack"
-    assert "policy='atack': must be one of avoid" in shown.texts()
-    shown.find(ipyvuetify.Combobox, "S2: policy").v_model = "attack"
-    assert "atack" not in shown.texts()
-    shown.find(ipyvuetify.Combobox, "Scenario").v_model = None
-    assert "id='': must be a scenario" in shown.texts()

@@ -49,10 +49,8 @@ def test_a_film_ends_with_its_game(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_a_contact_sheet_is_named_by_its_game(capsys: pytest.CaptureFixture[str]) -> None:
-    assert (
-        _film("fig-7.4 --condition delta=0.1 --n 6 --seed 4 --from -2900 --to -2800 --sheet 3 --size 100")
-        == 0
-    )
+    game = "fig-7.4 --condition delta=0.1 --n 6 --seed 4"
+    assert _film(f"{game} --from -2900 --to -2800 --sheet 3 --size 100") == 0
     assert capsys.readouterr().out == "sheet: fig-7.4-delta=0.1-n6-seed4.png\n"
     assert [path.name for path in Path().iterdir()] == ["fig-7.4-delta=0.1-n6-seed4.png"]
     assert _film("fig-6.1c --n 6 --to 5 --sheet 1 --size 100 --out one.png") == 0
@@ -69,13 +67,10 @@ def test_a_recorded_run_is_filmed_and_its_conflicts_are_listed(capsys: pytest.Ca
     assert header.split("  ")[0] == HEADINGS[0]
     run = recorded_run(Path("results"), name)
     assert run.seed == 3
-    expected = [
-        account for account in conflicts_of(run) if account.row["robot"] == 2 and account.row["start"] <= 300
-    ]
-    assert len(lines) == len(expected) > 0
-    assert [float(line.split()[0]) for line in lines] == pytest.approx(
-        [account.row["start"] for account in expected]
-    )
+    own = [each.row["start"] for each in conflicts_of(run) if each.row["robot"] == 2]
+    expected = [start for start in own if start <= 300]
+    assert [float(line.split()[0]) for line in lines] == pytest.approx(expected)
+    assert expected
 
 
 def test_conflicts_are_listed_from_an_instant(capsys: pytest.CaptureFixture[str]) -> None:
@@ -120,9 +115,8 @@ def test_a_failing_policy_is_reported_with_its_traceback_and_nothing_is_written(
     printed = capsys.readouterr()
     assert printed.out == ""
     trace, last = printed.err.splitlines()[:-1], printed.err.splitlines()[-1]
-    assert last == (
-        "kswarms: run scenario='mine' condition='' n=6 seed=0 failed: ZeroDivisionError: met too many"
-    )
+    run = "run scenario='mine' condition='' n=6 seed=0"
+    assert last == f"kswarms: {run} failed: ZeroDivisionError: met too many"
     assert trace[0] == "Traceback (most recent call last):"
     assert any(line.endswith("in choose") and "late.py" in line for line in trace)
     assert sorted(path.name for path in Path().iterdir() if path.is_file()) == ["late.py", "mine.toml"]
@@ -205,6 +199,5 @@ def test_without_its_extra_explore_prints_how_to_install_it(
 ) -> None:
     monkeypatch.setattr(explore_command, "find_spec", lambda _: None)
     assert invoke(["explore"]) == 2
-    assert capsys.readouterr().err == (
-        "kswarms: explore='solara': is not installed: pip install 'kswarms[explore]'\n"
-    )
+    expected = "kswarms: explore='solara': is not installed: pip install 'kswarms[explore]'\n"
+    assert capsys.readouterr().err == expected

@@ -56,8 +56,7 @@ class Table:
 
 
 def trace_of(out: Path) -> dict[str, Any]:
-    trace: dict[str, Any] = json.loads((out / "calibration.json").read_text())
-    return trace
+    return dict(json.loads((out / "calibration.json").read_text()))
 
 
 def test_the_error_compares_means_over_seeds() -> None:
@@ -88,10 +87,7 @@ def test_the_start_values_are_kept_if_they_are_the_best(tmp_path: Path) -> None:
 
 
 def test_without_any_effect_the_gain_is_zero(tmp_path: Path) -> None:
-    def flat(runs: Sequence[Run]) -> Played:
-        yield from ((run, 0.25) for run in runs)
-
-    validation = calibrate(TINY, flat, tmp_path)["validation"]
+    validation = calibrate(TINY, lambda runs: ((run, 0.25) for run in runs), tmp_path)["validation"]
     assert (validation["gain"], validation["gain_low"], validation["gain_high"]) == (0, 0, 0)
 
 
@@ -132,12 +128,9 @@ def test_a_fit_can_be_extended_by_more_generations(tmp_path: Path) -> None:
 
 
 def test_the_search_leaves_the_global_generator_alone(tmp_path: Path) -> None:
-    def state() -> list[int]:
-        return list(np.random.get_state()[1])  # noqa: NPY002  # the one that must not be touched
-
-    before = state()
+    before = list(np.random.get_state()[1])  # noqa: NPY002
     calibrate(TINY, Table(), tmp_path)
-    assert state() == before
+    assert list(np.random.get_state()[1]) == before  # noqa: NPY002
 
 
 def test_another_setup_needs_another_directory_or_a_fresh_start(tmp_path: Path) -> None:
@@ -191,10 +184,6 @@ def test_densities_must_be_in_the_table_and_out_a_directory(tmp_path: Path) -> N
         calibrate(TINY, Table(), tmp_path / "file")
 
 
-def _fail(*_: object) -> None:
-    raise OSError("disk full")
-
-
 def test_shares_are_saved_during_long_generations(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     saved: list[int] = []
     clock: Iterator[float] = iter(range(0, 10_000, 3))
@@ -227,8 +216,7 @@ def test_the_interval_distinguishes_a_gain_from_chance(fitted: float, beaten: bo
 def test_noise_common_to_both_candidates_does_not_widen_the_interval() -> None:
     noise = _shares(1, 0.0)
     found = validate(noise + 0.9, noise + 0.8)
-    assert found["gain_low"] == pytest.approx(10)
-    assert found["gain_high"] == pytest.approx(10)
+    assert (found["gain_low"], found["gain_high"]) == pytest.approx((10, 10))
 
 
 @pytest.mark.parametrize("end", [0.0, 1.0])

@@ -9,19 +9,16 @@ from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.cli import progress
 from kswarms.scenarios.cli.printing import format_duration
 from kswarms.scenarios.cli.progress import Count, show_progress, track
-from kswarms.scenarios.runs.run import Run, expand
+from kswarms.scenarios.runs.run import expand
 from kswarms.scenarios.runs.sweep import Failure, Outcome, Result
 
-RUNS = sorted(
-    expand([CATALOGUE["fig-6.1a"].replace(densities=(6, 30), seeds=2)]),
-    key=lambda run: run.effort,
-    reverse=True,
-)
+SCENARIO = CATALOGUE["fig-6.1a"].replace(densities=(6, 30), seeds=2)
+RUNS = sorted(expand([SCENARIO]), key=lambda run: run.effort, reverse=True)
 
 
-def ended(runs: list[Run] = RUNS) -> list[Result]:
-    outcomes = [Outcome([], [], {}), Failure("it broke"), Outcome([], [], {}), Outcome([], [], {})]
-    return [(run, outcome, 0.1) for run, outcome in zip(runs, outcomes, strict=True)]
+ENDED: list[Result] = [
+    (run, Failure("it broke") if k == 1 else Outcome([], [], {}), 0.1) for k, run in enumerate(RUNS)
+]
 
 
 def test_the_time_left_is_estimated_from_work_not_from_runs(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -44,24 +41,20 @@ def test_lines_are_json_and_the_last_one_is_complete(
     monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
 
     def played() -> Iterator[Result]:
-        for result in ended():
+        for result in ENDED:
             now[0] += 0.6
             yield result
 
     assert [count.done for count in show_progress(played(), RUNS, "json")] == [1, 2, 3, 4]
     lines = [json.loads(line) for line in capsys.readouterr().err.splitlines()]
-    assert [(line["done"], line["failed"], line["total"]) for line in lines] == [
-        (1, 0, 4),
-        (3, 1, 4),
-        (4, 1, 4),
-    ]
-    assert lines[-1]["scenario"] == "fig-6.1a"
-    assert lines[-1]["seconds_left"] == 0
+    counts = [(line["done"], line["failed"], line["total"]) for line in lines]
+    assert counts == [(1, 0, 4), (3, 1, 4), (4, 1, 4)]
+    assert (lines[-1]["scenario"], lines[-1]["seconds_left"]) == ("fig-6.1a", 0)
     assert lines[-1]["runs_per_second"] == pytest.approx(4 / 2.4, abs=1e-3)
 
 
 def test_a_bar_names_the_scenario_and_counts_failures(capsys: pytest.CaptureFixture[str]) -> None:
-    assert [count.failed for count in show_progress(ended(), RUNS, "bar")][-1] == 1
+    assert [count.failed for count in show_progress(ENDED, RUNS, "bar")][-1] == 1
     printed = capsys.readouterr()
     assert printed.out == ""
     assert "\x1b" not in printed.err  # no terminal, no control characters
@@ -88,6 +81,5 @@ def test_a_bar_of_steps_is_shown_on_a_terminal_only(
 
 
 def test_durations_are_in_seconds_minutes_or_hours() -> None:
-    assert [format_duration(seconds) for seconds in (0.24, 59.9, 60, 3599.4, 3599.6, 8337)] == [
-        *("0.2 s", "59.9 s", "1:00 min", "59:59 min", "1:00 h", "2:19 h")
-    ]
+    shown = [format_duration(seconds) for seconds in (0.24, 59.9, 60, 3599.4, 3599.6, 8337)]
+    assert shown == ["0.2 s", "59.9 s", "1:00 min", "59:59 min", "1:00 h", "2:19 h"]

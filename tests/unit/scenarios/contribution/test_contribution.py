@@ -66,20 +66,10 @@ def test_the_compared_games_equal_games_played_separately(absent_from: Any) -> N
             assert row[f"time_sud{ending}"] == conflicts_counted(model.tables()["conflicts"], 2)[swarm - 1]
             assert row[f"duration{ending}"] == 60.0
             for others, k in (("mates", swarm), ("opponents", 3 - swarm)):
-                seconds = {
-                    robot: (sum(t_a), t_p)
-                    for robot, t_a, t_p in (
-                        (robot.number, *robot.times())
-                        for robot in model.members[k - 1]
-                        if robot.number != row["robot"]
-                    )
-                }
-                assert row[f"{others}_t_a{ending}"] == pytest.approx(
-                    0.1 * sum(t_a for t_a, _ in seconds.values())
-                )
-                assert row[f"{others}_t_p{ending}"] == pytest.approx(
-                    0.1 * sum(t_p for _, t_p in seconds.values())
-                )
+                times = [each.times() for each in model.members[k - 1] if each.number != row["robot"]]
+                t_a, t_p = sum(sum(periods) for periods, _ in times), sum(periods for _, periods in times)
+                assert row[f"{others}_t_a{ending}"] == pytest.approx(0.1 * t_a)
+                assert row[f"{others}_t_p{ending}"] == pytest.approx(0.1 * t_p)
 
 
 def test_the_reward_sums_the_robots_conflicts_of_the_measured_game() -> None:
@@ -123,13 +113,10 @@ def test_without_a_measure_sud_in_time_utility_is_nan() -> None:
     assert row["sud"] == row["sud"]
 
 
-@pytest.mark.parametrize("robots", [[7], [-1]])
-def test_robots_outside_the_game_are_refused(robots: list[int]) -> None:
-    with pytest.raises(InputError, match=r"absent=.*: must be a robot of the game, 0 to 6"):
-        contributions(GAME, robots, [0])
-
-
-def test_a_game_with_absent_robots_is_refused() -> None:
+def test_robots_outside_the_game_and_games_with_absent_robots_are_refused() -> None:
+    for robot in (7, -1):
+        with pytest.raises(InputError, match=r"absent=.*: must be a robot of the game, 0 to 6"):
+            contributions(GAME, [robot], [0])
     with pytest.raises(InputError, match=r"absent=\(3,\): must be empty"):
         contributions(GAME.replace(absent=(3,)), [1], [0])
 
@@ -159,11 +146,7 @@ def test_a_table_keeps_the_rows_of_other_games(tmp_path: Path) -> None:
     assert table.schema.equals(SCHEMA)
     found = [(row["absent_from"], row["n"], row["seed"], row["robot"]) for row in table.to_pylist()]
     # The last part has replaced the first.
-    assert found == [
-        *(("x", 1, 7, 0), ("x", 1, 7, 2)),
-        *(("x", 26, 1, 0), ("x", 26, 1, 2)),
-        *(("y", 1, 1, 0), ("y", 1, 1, 2)),
-    ]
+    assert found == [(*game, robot) for game in (("x", 1, 7), ("x", 26, 1), ("y", 1, 1)) for robot in (0, 2)]
 
 
 def test_temporary_files_of_killed_processes_are_removed(tmp_path: Path) -> None:
@@ -173,11 +156,9 @@ def test_temporary_files_of_killed_processes_are_removed(tmp_path: Path) -> None
 
 
 def test_a_foreign_file_is_refused_and_kept(tmp_path: Path) -> None:
-    for content in (b"mine", None):
-        if content is None:
-            pq.write_table(pa.table({"mine": [1]}), tmp_path / FILE)
-        else:
-            (tmp_path / FILE).write_bytes(content)
+    pq.write_table(pa.table({"mine": [1]}), tmp_path / FILE)
+    for content in (b"mine", (tmp_path / FILE).read_bytes()):
+        (tmp_path / FILE).write_bytes(content)
         before = (tmp_path / FILE).read_bytes()
         with pytest.raises(InputError, match=r"holds a contribution\.parquet that is no table of kswarms"):
             prepare_table(tmp_path)

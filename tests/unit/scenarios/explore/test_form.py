@@ -12,6 +12,8 @@ from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.explore.form import Form, learning_of, with_parameter
 
+GO, ON = Action(name="go", direction=AWAY, duration=2.0), Action(name="on", direction=TOWARDS, duration=1.0)
+
 
 @pytest.mark.parametrize("scenario", CATALOGUE.values(), ids=CATALOGUE)
 def test_the_forms_of_a_condition_and_of_its_game_give_the_game(scenario: Scenario) -> None:
@@ -28,12 +30,7 @@ def test_the_forms_of_a_condition_and_of_its_game_give_the_game(scenario: Scenar
         {"side": 3.0},
         {"stations": ((0.0, 0.5),), "bases": ((-0.7, 0.0), (0.7, 0.0))},
         {"body": Body(radius=0.06, sensor_range=0.5, top_speed=0.25)},
-        {
-            "actions": (
-                Action(name="go", direction=AWAY, duration=2.0),
-                Action(name="on", direction=TOWARDS, duration=1.0),
-            )
-        },
+        {"actions": (GO, ON)},
         {"absent": (3,), "absent_from": "game"},
     ],
 )

@@ -22,8 +22,7 @@ def test_the_browser_gets_json() -> None:
 
 
 def test_the_chart_of_learning_has_a_line_for_each_pair_of_swarms() -> None:
-    session = Session("fig-6.8")
-    charts = charts_of(session.player.history)
+    charts = charts_of(Session("fig-6.8").player.history)
     learned = charts["Share of learners whose best action is to fight"]
     assert [line["name"] for line in learned["series"]] == ["S2 against S1", "S2 within"]
     assert learned["yAxis"]["max"] == 1.0

@@ -11,6 +11,7 @@ from kswarms.model.game_model import GameModel
 from kswarms.scenarios.runs.run import Run, digest
 from kswarms.scenarios.watch.conflicts import (
     ConflictReader,
+    WatchedConflict,
     arms_of,
     conflict_cells,
     conflicts_of,
@@ -41,11 +42,14 @@ def test_the_last_knowledge_is_that_of_the_robots(rule: str) -> None:
             assert (then.n, then.q, then.bound) == pytest.approx((now.n, now.q, now.bound), nan_ok=True)
 
 
-def test_a_conflict_changes_the_knowledge_about_its_action_only() -> None:
-    conflicts = [
-        a for a in conflicts_of(_run("inter-learner")) if a.row["robot"] == 7 and a.row["opponent_swarm"] == 1
-    ]
-    learned = [(a, b) for a, b in pairwise(conflicts) if not math.isnan(a.row["reward"])]
+@pytest.fixture(scope="module")
+def conflicts() -> list[WatchedConflict]:
+    return conflicts_of(_run("inter-learner"))
+
+
+def test_a_conflict_changes_the_knowledge_about_its_action_only(conflicts: list[WatchedConflict]) -> None:
+    own = [a for a in conflicts if a.row["robot"] == 7 and a.row["opponent_swarm"] == 1]
+    learned = [(a, b) for a, b in pairwise(own) if not math.isnan(a.row["reward"])]
     assert len(learned) > 10
     for earlier, later in learned:
         for before, after in zip(earlier.known, later.known, strict=True):
@@ -56,22 +60,21 @@ def test_a_conflict_changes_the_knowledge_about_its_action_only() -> None:
                 assert after[:3] == pytest.approx(before[:3], nan_ok=True)
 
 
-def test_the_action_chosen_during_learning_has_the_greatest_bound() -> None:
-    conflicts = [a for a in conflicts_of(_run("inter-learner")) if a.row["phase"] == "learning" and a.known]
-    compared = [a for a in conflicts if not math.isnan(a.known[0].bound)]
+def test_the_action_chosen_during_learning_has_the_greatest_bound(conflicts: list[WatchedConflict]) -> None:
+    learning, game = (
+        [a for a in conflicts if a.row["phase"] == phase and a.known] for phase in ("learning", "game")
+    )
+    compared = [a for a in learning if not math.isnan(a.known[0].bound)]
     assert len(compared) > 50
     for conflict in compared:
         bounds = {arm.action: arm.bound for arm in conflict.known}
         assert bounds[conflict.row["action"]] == pytest.approx(max(bounds.values()))
-    game = [a for a in conflicts_of(_run("inter-learner")) if a.row["phase"] == "game" and a.known]
     for conflict in game:
         values = {arm.action: arm.q for arm in conflict.known if arm.n > 0}
         assert values[conflict.row["action"]] == pytest.approx(max(values.values()))
 
 
-def test_robots_that_do_not_learn_know_nothing() -> None:
-    run = _run("inter-learner")
-    conflicts = conflicts_of(run)
+def test_robots_that_do_not_learn_know_nothing(conflicts: list[WatchedConflict]) -> None:
     assert all(a.known == () for a in conflicts if a.row["swarm"] == 1 or a.row["opponent_swarm"] == 2)
     assert [a.row["start"] for a in conflicts] == sorted(a.row["start"] for a in conflicts)
     assert {a.row["phase"] for a in conflicts} == {"learning", "game"}
@@ -80,26 +83,21 @@ def test_robots_that_do_not_learn_know_nothing() -> None:
 def test_conflicts_are_read_once_and_removed_from_the_table() -> None:
     run = _run("inter-learner", learning=0.0)
     model = GameModel(run.game, seed=0, record="conflicts")
-    conflicts = ConflictReader(model)
+    reader = ConflictReader(model)
     model.step()
-    first = list(conflicts.read())
-    assert list(conflicts.read()) == []
+    first = list(reader.read())
+    assert list(reader.read()) == []
     assert not any(model.datacollector.tables["conflicts"].values())
     while model.running:
         model.step()
-    whole = sorted(
-        [*first, *conflicts.read()], key=lambda conflict: (conflict.row["start"], conflict.row["robot"])
-    )
+    whole = sorted([*first, *reader.read()], key=lambda each: (each.row["start"], each.row["robot"]))
     again = [conflict_cells(conflict, 0.0) for conflict in conflicts_of(run)]
     assert [conflict_cells(conflict, 0.0) for conflict in whole] == again
     assert 0 < len(first) < len(whole)
 
 
-def test_the_cells_of_a_conflict() -> None:
-    run = _run("inter-learner")
-    conflict = next(
-        a for a in conflicts_of(run) if a.known and a.known[0].n > 0 and a.row["phase"] == "learning"
-    )
+def test_the_cells_of_a_conflict(conflicts: list[WatchedConflict]) -> None:
+    conflict = next(a for a in conflicts if a.known and a.known[0].n > 0 and a.row["phase"] == "learning")
     cells = conflict_cells(conflict, 300.0)
     assert cells[0] == f"{conflict.row['start'] - 300:.1f}"
     assert cells[1] == f"{conflict.row['robot']} of S2"

@@ -34,11 +34,15 @@ def _state(player: Player) -> tuple[Any, ...]:
     return player.time, player.snapshot().positions.tolist(), player.model.results()
 
 
-def test_a_game_played_in_steps_equals_a_game_played_in_one_go() -> None:
-    player = Player(LEARNING, 5)
+@pytest.mark.parametrize(
+    "absent", [{}, {"absent": (1, 6)}, {"absent": (5, 6, 7, 8, 9), "absent_from": "game"}]
+)
+def test_a_game_played_in_steps_equals_a_game_played_in_one_go(absent: dict[str, Any]) -> None:
+    game = LEARNING.replace(**absent)
+    player = Player(game, 5)
     while not player.ended:
         player.advance(0.7)
-    straight = GameModel(LEARNING, seed=5)
+    straight = GameModel(game, seed=5)
     straight.play()
     assert player.model.results() == straight.results()
     np.testing.assert_array_equal(player.snapshot().positions, straight.states.positions)
@@ -48,12 +52,9 @@ def test_a_game_played_in_steps_equals_a_game_played_in_one_go() -> None:
 def test_time_is_negative_during_learning() -> None:
     player = Player(LEARNING, 0)
     assert (player.time, player.begin) == (-60.0, 60.0)
-    player.advance(59.9)
-    assert player.time == pytest.approx(-0.1)
-    assert player.model.phase == "learning"
-    player.advance(0.2)
-    assert player.time == pytest.approx(0.1)
-    assert player.model.phase == "game"
+    for seconds, time, phase in ((59.9, -0.1, "learning"), (0.2, 0.1, "game")):
+        player.advance(seconds)
+        assert (player.time, player.model.phase) == (pytest.approx(time), phase)
     assert Player(_game(), 0).time == 0.0
 
 
@@ -115,19 +116,16 @@ def test_a_long_history_is_thinned_and_keeps_its_first_sample(monkeypatch: pytes
     player.seek(100.0)
     times = [sample.time for sample in player.history]
     assert len(times) <= 6
-    assert times[0] == 0.0
+    assert (times[0], times[-1]) == (0.0, 100.0)
     assert times == sorted(set(times))
-    assert times[-1] == 100.0
 
 
 def test_a_returned_history_does_not_change() -> None:
     player = Player(LEARNING, 0)
     returned = player.history
-    before = list(returned)
     player.advance(10.0)
-    assert returned == before
-    assert player.history[: len(before)] == before
-    assert len(player.history) > len(before)
+    assert returned == player.history[:1]
+    assert len(player.history) > 1
 
 
 def test_a_sample_has_the_results_of_every_swarm() -> None:
@@ -179,7 +177,6 @@ def test_a_view_has_the_state_of_the_robot() -> None:
 def test_the_sensor_ahead_measures_the_gap_to_a_robot_ahead(scene: Any) -> None:
     model = scene([(0.0, 0.0, 0.0)], [(0.4, 0.0, 0.0)])
     view = view_of(model, 0)
-    assert view.sensors[0].free == pytest.approx(0.4 - 2 * 0.085)
-    assert view.sensors[0].active
+    assert (view.sensors[0].free, view.sensors[0].active) == (pytest.approx(0.4 - 2 * 0.085), True)
     assert view.sensors[4].free == pytest.approx(0.667)
     assert view.opponent == ""
