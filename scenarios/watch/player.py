@@ -21,7 +21,6 @@ from kswarms.scenarios.watch.conflicts import ConflictReader, WatchedConflict
 from kswarms.scenarios.watch.robot_view import RobotView, row_of, view_robot
 
 Booleans = NDArray[np.bool_]
-
 MOST_SAMPLES: Final = 400
 """Maximum length of the history; a longer one is thinned to every second sample."""
 MOST_CONFLICTS: Final = 5000

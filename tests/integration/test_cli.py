@@ -115,11 +115,13 @@ def test_bad_input_is_refused_in_one_line_and_nothing_is_written(
 
 
 def test_a_run_writes_tables_and_prints_the_next_command(capsys: pytest.CaptureFixture[str]) -> None:
-    assert invoke(["run", "fig-6.1c", *QUICK, "--out", "my results", "--record", "robots,conflicts"]) == 0
+    options = ["--out", "my results", "--record", "robots,conflicts,trajectory"]
+    assert invoke(["run", "fig-6.1c", *QUICK, *options]) == 0
     assert capsys.readouterr().out.splitlines() == [
         "table:  my results/runs.parquet",
         "table:  my results/conflicts.parquet",
         "table:  my results/robots.parquet",
+        "table:  my results/trajectory.parquet",
         "next:   kswarms report 'my results'  (all results in one HTML file)",
     ]
     rows = pq.read_table("my results/runs.parquet").to_pylist()
@@ -134,14 +136,9 @@ def test_a_run_writes_tables_and_prints_the_next_command(capsys: pytest.CaptureF
         assert sum(row["t_a"] + row["t_p"] for row in mine) == pytest.approx(3 * 600)
     started = pq.read_table("my results/conflicts.parquet").num_rows
     assert started == sum(row["conflicts_intra"] + row["conflicts_inter"] for row in rows)
-
-
-def test_every_record_has_the_columns_of_its_table() -> None:
-    assert invoke(["run", "fig-6.1c", *QUICK, "--record", "conflicts,robots,trajectory"]) == 0
-    trajectory = pq.read_table("results/trajectory.parquet").to_pydict()
+    trajectory = pq.read_table("my results/trajectory.parquet").to_pydict()
     assert sorted(set(trajectory["time"])) == [10.0 * k for k in range(61)]
-    assert set(trajectory["robot"]) == set(range(6))
-    assert set(trajectory["state"]) == {"A", "P"}
+    assert (set(trajectory["robot"]), set(trajectory["state"])) == (set(range(6)), {"A", "P"})
 
 
 def test_seeds_and_first_seed_select_the_seeds() -> None:
@@ -183,14 +180,15 @@ def test_a_table_is_played_and_printed(capsys: pytest.CaptureFixture[str]) -> No
 
 
 @pytest.mark.slow
-def test_a_table_without_published_numbers_is_printed_and_its_figure_drawn(
+def test_a_table_without_published_numbers_is_printed_and_each_scenario_has_a_figure(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     words = ["run", "table-7.1", "table-6.2", "table-7.1", *QUICK[:-1]]
     assert invoke(words) == 0
     printed = capsys.readouterr().out
-    pictures = [f"figure: results/figures/fig-{number}.png" for number in ("7.4", "6.8")]
-    assert "\n".join([*pictures, "", "table-7.1: "]) in printed
+    pictures = [f"results/figures/fig-{number}.png" for number in ("7.4", "6.8")]
+    assert "\n".join([*(f"figure: {each}" for each in pictures), "", "table-7.1: "]) in printed
+    assert all(Path(each).read_bytes().startswith(b"\x89PNG") for each in pictures)
     assert printed.count("table-7.1: ") == printed.count("table-6.2: ") == 1
     first, second = printed.split("table-6.2: ")
     assert "published" not in first
@@ -210,18 +208,6 @@ def test_jobs_order_and_portions_do_not_change_the_tables() -> None:
     for name in ("runs.parquet", "policies.parquet"):
         one, two, three = (Path(place, name).read_bytes() for place in ("one", "two", "three"))
         assert one == two == three
-
-
-@pytest.mark.slow
-def test_each_scenario_has_a_figure(capsys: pytest.CaptureFixture[str]) -> None:
-    assert invoke(["run", "fig-6.1a", "fig-6.1b", *QUICK[:-1]]) == 0
-    pictures = [f"results/figures/fig-6.1{letter}.png" for letter in "ab"]
-    assert capsys.readouterr().out.splitlines() == [
-        "table:  results/runs.parquet",
-        *(f"figure: {picture}" for picture in pictures),
-        "next:   kswarms report results  (all results in one HTML file)",
-    ]
-    assert all(Path(picture).read_bytes().startswith(b"\x89PNG") for picture in pictures)
 
 
 def test_all_plays_the_scenarios_that_the_densities_suit(

@@ -73,7 +73,8 @@ class Browser:
     def __init__(self, address: str, size: tuple[int, int]) -> None:
         options = webdriver.ChromeOptions()
         options.binary_location = BROWSER
-        for argument in ("headless=new", "no-sandbox", "disable-dev-shm-usage", "disable-background-networking"):
+        flags = ("headless=new", "no-sandbox", "disable-dev-shm-usage", "disable-background-networking")
+        for argument in flags:
             options.add_argument(f"--{argument}")
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         self.driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
@@ -192,6 +193,11 @@ def test_the_page_plays_changes_and_shows_a_learner(browse: Callable[..., Browse
         mouse.move_to_element_with_offset(canvas, x, x // 2).click().perform()
     browser.wait(lambda: browser.text(".kswarms-table td", " of S") != selected)
 
+    # An invalid control is reported.
+    field = next(f for f in browser.all("input") if f.get_attribute("value") == "attack")
+    field.send_keys("x\n")
+    browser.wait(lambda: browser.all(".v-alert", "policy='attackx': must be one of avoid"))
+
     assert browser.complaints() == []
     requests = [url for url in browser.requests() if not url.startswith("data:")]
     host = address.removeprefix("http://").rstrip("/")
@@ -199,17 +205,7 @@ def test_the_page_plays_changes_and_shows_a_learner(browse: Callable[..., Browse
     assert [url for url in requests if url.split("/")[2] != host] == []
 
 
-def test_an_invalid_control_is_reported_on_the_page(browse: Callable[..., Browser]) -> None:
-    browser = browse()
-    field = next(f for f in browser.all("input") if f.get_attribute("value") == "attack")
-    field.send_keys("x\n")
-    browser.wait(lambda: browser.all(".v-alert", "policy='attackx': must be one of avoid"))
-    assert browser.complaints() == []
-
-
-def test_a_recorded_run_with_an_absent_robot_is_watched(
-    browse: Callable[..., Browser], tmp_path: Path
-) -> None:
+def test_a_run_with_an_absent_robot_is_watched(browse: Callable[..., Browser], tmp_path: Path) -> None:
     command = f"contribution fig-6.4b --n 6 --robots 3 --seeds 1 --first-seed 5 --jobs 1 --out {tmp_path}"
     assert invoke(command.split()) == 0
     (row,) = pq.read_table(tmp_path / "contribution.parquet").to_pylist()
