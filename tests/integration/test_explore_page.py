@@ -1,6 +1,7 @@
 """The page, rendered without a browser: it plays, shows and releases its game."""
 
 import gc
+import queue
 import socket
 import threading
 import weakref
@@ -159,30 +160,25 @@ def test_a_page_is_served_at_the_printed_address(monkeypatch: pytest.MonkeyPatch
 
     from kswarms.scenarios.explore import server
 
-    announced, opened = threading.Event(), threading.Event()
-    lines: list[str] = []
+    opened = threading.Event()
+    announced: queue.Queue[str] = queue.Queue()
 
     def run(own: uvicorn.Server, sockets: list[socket.socket]) -> None:
         own.started = True
-        assert announced.wait(10)
-        assert opened.wait(10)
         (listener,) = sockets
-        assert lines == [f"http://localhost:{listener.getsockname()[1]}"]
-
-    def ready(address: str) -> None:
-        lines.append(address)
-        announced.set()
+        assert announced.get(timeout=10) == f"http://localhost:{listener.getsockname()[1]}"
+        assert opened.wait(10)
 
     monkeypatch.setattr(uvicorn.Server, "run", run)
     monkeypatch.setattr(server.webbrowser, "open", lambda address: opened.set())
-    server.serve("fig-6.2", 0, True, ready)
+    server.serve("fig-6.2", 0, True, announced.put)
     assert page.start == "fig-6.2"
     assert not settings.telemetry.mixpanel_enable
     with (
         socket.create_server(("127.0.0.1", 0)) as taken,
         pytest.raises(InputError, match="must be a free port"),
     ):
-        server.serve("fig-6.2", taken.getsockname()[1], False, ready)
+        server.serve("fig-6.2", taken.getsockname()[1], False, announced.put)
 
 
 def test_a_page_that_is_closed_ends_its_thread_and_frees_its_game(show: Callable[[str], Shown]) -> None:

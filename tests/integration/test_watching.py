@@ -53,7 +53,8 @@ def test_a_contact_sheet_is_named_by_its_game(capsys: pytest.CaptureFixture[str]
 
 
 def test_a_recorded_run_is_filmed_and_its_conflicts_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
-    assert invoke(["run", "fig-6.1c", "--densities", "6", "--seeds", "1", "--first-seed", "3", "--jobs", "1", "--no-figures"]) == 0
+    command = "run fig-6.1c --densities 6 --seeds 1 --first-seed 3 --jobs 1 --no-figures"
+    assert invoke(command.split()) == 0
     name = str(pq.read_table("results/runs.parquet")["run"][0])
     capsys.readouterr()
     assert _film(f"--run {name} results --seed 4") == 2
