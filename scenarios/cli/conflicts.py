@@ -16,9 +16,12 @@ def conflicts(
     condition: ConditionName = None,
     n: Robots = None,
     seed: Seed = None,
-    robot: Annotated[int | None, typer.Option(help="Only of this robot, from 0. [default: of all]")] = None,
+    robot: Annotated[int | None, typer.Option(help="Robot, from 0. [default: all]")] = None,
     begin: Annotated[
-        float, typer.Option("--from", show_default="all", help="First instant (s of the measured game).")
+        float,
+        typer.Option(
+            "--from", show_default="start of learning", help="First instant (s of the measured game)."
+        ),
     ] = -math.inf,
     end: Annotated[float, typer.Option("--to", show_default="the end", help="Last instant (s).")] = math.inf,
 ) -> None:

@@ -34,7 +34,7 @@ def film(
     size: Annotated[int, typer.Option(min=64, max=4096, help="Width of a frame (pixels).")] = 720,
     sheet: Annotated[
         int | None,
-        typer.Option(metavar="K", min=1, max=100, help="Write a contact sheet of K instants (PNG)."),
+        typer.Option(metavar="K", min=1, max=100, help="Write a contact sheet (PNG) of K instants instead."),
     ] = None,
     out: Annotated[
         Path | None,

@@ -38,9 +38,11 @@ def parse_directory(text: str) -> Path:
     return Path(text)
 
 
-_WATCHED: Final = "Scenario or table of `kswarms list`, or my.toml; with --run, a results directory."
-_FIRST: Final = f"{_WATCHED} [default: {FIRST_SCENARIO}]"
-Watched = Annotated[str | None, typer.Argument(metavar="ID|DIR", help=_FIRST, autocompletion=complete_ids)]
+_WATCHED: Final = (
+    "Scenario or table of `kswarms list`, or my.toml; with --run, a results directory. "
+    f"[default: {FIRST_SCENARIO}]"
+)
+Watched = Annotated[str | None, typer.Argument(metavar="ID|DIR", help=_WATCHED, autocompletion=complete_ids)]
 RunDigest = Annotated[
     str, typer.Option(metavar="DIGEST", help="Run of DIR to play again: column `run` of its tables.")
 ]

@@ -124,18 +124,16 @@ def contributions(
 
 @dataclass
 class _Measured:
-    """Measures of a run. The sums are over the conflicts of each robot in the measured game."""
+    """Measures of a run."""
 
     run: str  # digest
     swarms: list[dict[str, Any]]  # results of each swarm
     time_sud: Sequence[float]  # of each swarm (s)
     times: dict[int, tuple[float, float]]  # T(a) and T(p) of each robot in the measured game (s)
-    reward: dict[int, float] = field(default_factory=lambda: defaultdict(float))  # sum of R
-    reward_time: dict[int, float] = field(
-        default_factory=lambda: defaultdict(float)
-    )  # sum of T(a) + T(p) (s)
+    # Sums over a robot's conflicts in the measured game: R, T(a) + T(p) (s), and T(a) by opponent (s).
+    reward: dict[int, float] = field(default_factory=lambda: defaultdict(float))
+    reward_time: dict[int, float] = field(default_factory=lambda: defaultdict(float))
     met: dict[tuple[int, int], float] = field(default_factory=lambda: defaultdict(float))
-    """T(a) of a robot in conflicts with another (s), by robot and opponent."""
 
 
 def _measure(run: Run, outcome: Outcome, rewards: Sequence[Reward], time_sud: TimeSud | None) -> _Measured:
