@@ -82,7 +82,7 @@ def _end_of_game(model: PlayedModel) -> dict[str, Any]:
 
 def _swarms(game: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Return the values of each swarm at the end of a game; ``duration`` is the time that was played."""
-    if "ended" not in game or "pucks_1" not in game:
+    if not {"game_time", "ended", "pucks_1"} <= game.keys():
         raise InputError("source", sorted(map(str, game)), 'must have model reporters (record="model")')
     if not game["ended"]:
         raise InputError("ended", game["ended"], "must be given: a game was stopped before its end")
