@@ -149,9 +149,9 @@ def apportion(n: int, shares: Sequence[int]) -> list[int]:
     """
     if n > MOST_ROBOTS:
         raise InputError("n", n, f"must be at most {MOST_ROBOTS}")
-    whole = sum(shares)
-    sizes = [n * share // whole for share in shares]
-    by_remainder = sorted(range(len(shares)), key=lambda k: -(n * shares[k] % whole))
+    total = sum(shares)
+    sizes = [n * share // total for share in shares]
+    by_remainder = sorted(range(len(shares)), key=lambda k: -(n * shares[k] % total))
     for k in by_remainder[: n - sum(sizes)]:
         sizes[k] += 1
     return sizes

@@ -20,8 +20,8 @@ _PLAIN_PASSES: Final = 3
 """Passes without momentum, which suffice except in jams."""
 _MOST_MOMENTUM: Final = 0.8
 """Maximum fraction of the last pass's move that a pass adds."""
-_HALF_GATHERED: Final = 6
-"""Passes with momentum after which that fraction would be a half."""
+_HALF_MOMENTUM: Final = 6
+"""Passes with momentum after which that fraction is a half."""
 _PASSES: Final = 200
 """Passes between two searches for close pairs."""
 _ROUNDS: Final = 200
@@ -32,7 +32,7 @@ _TURN: Final = 0.01
 """Turn of the pairs of such a row (rad)."""
 _FORGET_AFTER: Final = 4
 _FORGET_EVERY: Final = 8
-"""Passes between two removals of pairs at rest: most of a jam is resolved long before its worst part."""
+"""Passes after which pairs at rest are removed: most of a jam is resolved long before its worst part."""
 _TOUCH: Final = 1e-9
 """Maximum overlap of bodies that only touch; the rounding error of parted bodies is smaller (m)."""
 _AT_REST: Final = 1e-5
@@ -202,8 +202,8 @@ def _measure_overlaps(positions: Floats, radius: float, work: Records, pairs: Re
 @compiled
 def _momentum(done: int) -> float:
     """Return the fraction of the last pass's move that is added after `done` passes."""
-    gathered = done - _PLAIN_PASSES + 1
-    return min(_MOST_MOMENTUM, max(0.0, gathered / (gathered + _HALF_GATHERED)))
+    passes = done - _PLAIN_PASSES + 1
+    return min(_MOST_MOMENTUM, max(0.0, passes / (passes + _HALF_MOMENTUM)))
 
 
 @compiled

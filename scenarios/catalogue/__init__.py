@@ -1,7 +1,6 @@
 """The catalogue: a scenario for every figure of chapters 6 and 7 of the source, and their tables.
 
-Each scenario reads as a row of the tables of the specification (3.2 and 3.3): id, title, swarms and the
-differences from the default world.
+The entries follow the tables of sections 3.2 and 3.3 of the specification, and omit default values.
 """
 
 from typing import Final, NamedTuple

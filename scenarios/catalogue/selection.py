@@ -13,7 +13,7 @@ from kswarms.scenarios.description.toml_files import read_scenarios
 FIRST_SCENARIO: Final = "fig-6.1c"
 """Default scenario of `kswarms explore` and `kswarms film`."""
 USUAL_N: Final = 20
-"""Their default number of robots; rounded to a multiple that the scenario allows."""
+"""Default number of robots of both; rounded to a multiple that the scenario allows."""
 
 
 def select_scenarios(ids: Iterable[str]) -> list[Scenario]:

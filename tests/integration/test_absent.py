@@ -1,4 +1,4 @@
-"""Games with absent robots are otherwise the same games (docs/contribution.md)."""
+"""Games with absent robots differ only by the effect of their absence (docs/contribution.md)."""
 
 import json
 import math
@@ -23,7 +23,7 @@ NEAR = 2 * KREMBOT.radius + KREMBOT.sensing_scale * max(FITTED.flight_range, FIT
 """Robots farther apart than this, centre to centre, do not affect each other (m)."""
 RESERVE = 0.05
 """Upper bound of the approach of two robots in a period (m)."""
-WAYS = ("learning", "game")
+ABSENT_FROM = ("learning", "game")
 
 
 def game(*policies: str, **fields: Any) -> Game:
@@ -42,18 +42,16 @@ def world(model: GameModel, absent: tuple[int, ...] = ()) -> list[Any]:
 
 
 def test_the_other_robots_keep_number_place_heading_policy_and_streams() -> None:
-    what = game("mixed", "learner", "random", size=5)
-    whole = GameModel(what, 3)
-    rest = GameModel(what.replace(absent=(0, 7, 8)), 3)
+    base = game("mixed", "learner", "random", size=5)
+    complete = GameModel(base, 3)
+    rest = GameModel(base.replace(absent=(0, 7, 8)), 3)
     assert [robot.number for robot in rest.robots] == [1, 2, 3, 4, 5, 6, 9, 10, 11, 12, 13, 14]
-    assert [[robot.number for robot in members] for members in rest.members] == [
-        [1, 2, 3, 4],
-        [5, 6, 9],
-        [10, 11, 12, 13, 14],
-    ]
-    assert world(rest) == world(whole, (0, 7, 8))
+    assert [len(members) for members in rest.members] == [4, 3, 5]
+    for swarm, members in enumerate(rest.members):
+        assert {robot.number // 5 for robot in members} == {swarm}
+    assert world(rest) == world(complete, (0, 7, 8))
     for robot in rest.robots:
-        twin = whole.robots[robot.number]
+        twin = complete.robots[robot.number]
         assert (robot.swarm, robot.policy_name) == (twin.swarm, twin.policy_name)
         assert [robot._draws(p).random() for p in Purpose] == [twin._draws(p).random() for p in Purpose]
 
@@ -61,22 +59,22 @@ def test_the_other_robots_keep_number_place_heading_policy_and_streams() -> None
 @settings(max_examples=8)
 @given(seed=st.integers(0, 10**6), absent=st.integers(0, 5))
 def test_nothing_changes_until_a_robot_comes_near_the_absent_one(seed: int, absent: int) -> None:
-    what = game("avoid", "attack", size=3, learning=0.0, body="krembot")
-    whole, rest = GameModel(what, seed), GameModel(what.replace(absent=(absent,)), seed)
-    gone = whole.robots[absent]
-    others = [robot for robot in whole.robots if robot is not gone]
+    base = game("avoid", "attack", size=3, learning=0.0, body="krembot")
+    complete, rest = GameModel(base, seed), GameModel(base.replace(absent=(absent,)), seed)
+    gone = complete.robots[absent]
+    others = [robot for robot in complete.robots if robot is not gone]
     for tick in range(1, 300):
         if min(math.dist(gone.position, robot.position) for robot in others) < NEAR + RESERVE:
             break
-        for model in (whole, rest):
+        for model in (complete, rest):
             model.env.run(until=tick)
-        assert world(rest) == world(whole, (absent,))
+        assert world(rest) == world(complete, (absent,))
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_robots_that_met_the_absent_one_move_differently_without_it(seed: int) -> None:
-    whole, rest = (play(game(absent=absent), seed) for absent in ((), (4,)))
-    assert world(rest) != world(whole, (4,))
+    complete, rest = (play(game(absent=absent), seed) for absent in ((), (4,)))
+    assert world(rest) != world(complete, (4,))
 
 
 def test_a_lone_robot_has_no_conflicts() -> None:
@@ -94,16 +92,16 @@ def test_a_lone_robot_has_no_conflicts() -> None:
 
 @pytest.mark.parametrize("absent", [(0,), (3, 11), (6, 7, 8, 9, 10, 11)])
 def test_removal_at_the_switch_does_not_change_the_learning_phase(absent: tuple[int, ...]) -> None:
-    whole = play_learning_phase(game(supply=9))
+    complete = play_learning_phase(game(supply=9))
     rest = play_learning_phase(game(supply=9, absent=absent, absent_from="game"))
-    assert json.dumps(conflicts_of(rest, "learning")) == json.dumps(conflicts_of(whole, "learning"))
-    assert world(rest) == world(whole, absent)
+    assert json.dumps(conflicts_of(rest, "learning")) == json.dumps(conflicts_of(complete, "learning"))
+    assert world(rest) == world(complete, absent)
     assert min(rest.supply) < 9
     assert rest.carried_at_start == sum(robot.carrying for robot in rest.robots)
-    for model in (whole, rest):
+    for model in (complete, rest):
         model.play()
-    assert json.dumps(conflicts_of(rest, "learning")) == json.dumps(conflicts_of(whole, "learning"))
-    assert world(rest) != world(whole, absent)
+    assert json.dumps(conflicts_of(rest, "learning")) == json.dumps(conflicts_of(complete, "learning"))
+    assert world(rest) != world(complete, absent)
 
 
 def test_a_removed_robot_neither_acts_nor_is_met() -> None:
@@ -157,15 +155,15 @@ def test_the_puck_of_an_absent_robot_is_not_counted() -> None:
     carries_puck = False
     for seed in range(4):
         absent = (0, 1, 2, 6)
-        whole = play_learning_phase(game(learning=60.0), seed)
-        carries_puck |= any(robot.carrying for robot in whole.robots if robot.number in absent)
+        complete = play_learning_phase(game(learning=60.0), seed)
+        carries_puck |= any(robot.carrying for robot in complete.robots if robot.number in absent)
         model = play(game(learning=60.0, absent=absent, absent_from="game", duration=120.0), seed)
         check_times_and_pucks(model)
     assert carries_puck
 
 
 def test_times_of_the_present_robots_add_up() -> None:
-    for since in WAYS:
+    for since in ABSENT_FROM:
         model = play(game("attack", "learner", absent=(0, 9, 10), absent_from=since, puck_limit=3))
         assert [row["size"] for row in model.results()] == [5, 4]
         check_times_and_pucks(model)
@@ -175,7 +173,9 @@ def test_times_of_the_present_robots_add_up() -> None:
 
 
 def test_without_learning_both_are_the_same() -> None:
-    models = [play(game("avoid", "attack", learning=0.0, absent=(3,), absent_from=way)) for way in WAYS]
+    models = [
+        play(game("avoid", "attack", learning=0.0, absent=(3,), absent_from=way)) for way in ABSENT_FROM
+    ]
     never, left = (json.dumps([model.results(), model.tables()]) for model in models)
     assert never == left
 
@@ -186,17 +186,17 @@ def test_a_robot_without_conflicts_may_be_removed_early_or_late(preempt: bool) -
     compared = 0
     for seed in range(12):
         parameters = FITTED.replace(preempt=preempt)
-        what = game("attack", "attack", size=3, learning=4.0, body="krembot", parameters=parameters, supply=2)
-        whole = GameModel(what, seed)
-        gone = whole.robots[2]
+        base = game("attack", "attack", size=3, learning=4.0, body="krembot", parameters=parameters, supply=2)
+        complete = GameModel(base, seed)
+        gone = complete.robots[2]
         gap = math.inf
         for tick in range(1, 41):
-            others = [robot for robot in whole.robots if robot is not gone]
+            others = [robot for robot in complete.robots if robot is not gone]
             gap = min(gap, *(math.dist(gone.position, robot.position) for robot in others))
-            whole.env.run(until=tick)
+            complete.env.run(until=tick)
         if gap < NEAR + RESERVE or gone.carrying:
             continue
-        never, left = (play(what.replace(absent=(2,), absent_from=way), seed) for way in WAYS)
+        never, left = (play(base.replace(absent=(2,), absent_from=way), seed) for way in ABSENT_FROM)
         assert world(never) == world(left)
         assert json.dumps(conflicts_of(never, "game")) == json.dumps(conflicts_of(left, "game"))
         compared += 1

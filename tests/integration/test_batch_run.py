@@ -23,8 +23,8 @@ from kswarms.model.foraging import ForagingModel
 if __name__ == "__main__":
     rows = mesa.batch_run(
         ForagingModel,
-        {"n": [6, 13], "policies": ["avoid,attack", "mixed"], "seed": range(2), "duration": 47.0,
-         "puck_limit": [0, 1]},
+        {"n": [6, 13], "policies": ["avoid,attack", "mixed"], "seed": range(2), "puck_limit": [0, 1],
+         "duration": 47.0},
         number_processes=int(sys.argv[1]),
         data_collection_period=int(sys.argv[2]),
         display_progress=False,

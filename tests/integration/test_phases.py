@@ -117,8 +117,8 @@ def test_a_running_action_is_split_play_learning_phase() -> None:
 
 @pytest.mark.parametrize("policy", ["learner", "inter-learner", "learner(rule='uniform-random')"])
 def test_after_the_switch_nothing_is_learned_or_explored(policy: str) -> None:
-    what = game("attack", policy)
-    model = play_learning_phase(what)
+    base = game("attack", policy)
+    model = play_learning_phase(base)
     learned = repr([snapshot_of(robot.policy) for robot in model.robots])
     model.play()
     assert repr([snapshot_of(robot.policy) for robot in model.robots]) == learned
@@ -226,8 +226,8 @@ def test_samples_show_both_phases() -> None:
 
 
 def test_sampling_does_not_change_what_is_learned() -> None:
-    what = game("attack", "learner", sample_period=0.7)
-    seen = [play(what, 2, record) for record in ("", "model,agents,conflicts")]
+    base = game("attack", "learner", sample_period=0.7)
+    seen = [play(base, 2, record) for record in ("", "model,agents,conflicts")]
     first, second = (repr([snapshot_of(robot.policy) for robot in model.robots]) for model in seen)
     assert first == second
     assert world(seen[0]) == world(seen[1])

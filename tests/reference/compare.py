@@ -12,7 +12,7 @@ from kswarms.model.kernel.kernel import Kernel
 from tests.reference.kernel import Event, ReferenceKernel, State
 
 PRECISION = 1e-9
-"""Tolerance (m, rad): a jam amplifies differences in the last bits."""
+"""Tolerance (m, rad); a jam amplifies rounding errors."""
 
 
 def assert_same_events(found: Records, expected: list[Event]) -> None:
@@ -36,7 +36,7 @@ def _same_angle(angle: float, other: float) -> bool:
 
 
 def assert_same_state(states: RobotStates, expected: State) -> None:
-    """Compare positions and headings, and that the stored direction is the heading's."""
+    """Compare positions and headings; check that the stored direction is that of the heading."""
     np.testing.assert_allclose(states.positions, expected.positions, rtol=0, atol=PRECISION)
     robots = states.robots
     np.testing.assert_allclose(robots["heading"], expected.heading, rtol=0, atol=PRECISION)

@@ -8,40 +8,40 @@ import numpy as np
 from kswarms.agents.common.arrays import Floats
 from kswarms.model.kernel.relaxation import TOLERANCE
 
-# How the relaxation goes about it: numbers of the compiled code, which change where a jam comes to rest.
+# Constants of the relaxation, as in the compiled code: they affect the final positions in a jam.
 NO_OVERLAP = 1e-9
-"""Bodies that overlap by less (m) just touch: how many are counted must not hang on the last bit."""
+"""Bodies that overlap by less (m) only touch; rounding must not change how many overlaps are counted."""
 PLAIN_PASSES = 3
-"""Passes before momentum sets in."""
+"""Passes without momentum."""
 ROUNDS = 50
 WATCHED_GAP = 0.1
-"""Part of the radius: pairs farther apart are not looked at before the next round."""
+"""Gap of a watched pair, in radii; pairs that are farther apart are ignored until the next round."""
 FORGET_AFTER, FORGET_EVERY = 4, 8
-"""In which passes pairs that have come apart and rest are dropped until the next round."""
+"""Passes after which pairs at rest without overlap are ignored until the next round."""
 AT_REST = 1e-5
-"""A pair rests if its four coordinates were corrected by no more than this in all (m)."""
+"""Maximum sum of the last corrections of the four coordinates of a pair at rest (m)."""
 
 
 class Ground(NamedTuple):
-    """What bodies move on and are made of: lengths in metres."""
+    """Constants of bodies and arena; lengths in metres."""
 
     radius: float
     half: float
     friction: float
     push_share: float
-    most_momentum: float = 0.8  # part of an overlapping body's last correction that is added to the next
+    most_momentum: float = 0.8  # maximum fraction of a body's last correction that is added to the next
 
 
 class Contact(NamedTuple):
-    """An obstacle in a robot's way."""
+    """Contact of a robot with an obstacle."""
 
     normal: Floats  # unit vector towards it
-    allowed: float  # displacement towards it that is left to the robot (m)
-    blocked: float  # and that it loses (m)
+    allowed: float  # allowed displacement towards it (m)
+    blocked: float  # blocked displacement towards it (m)
 
 
 def offsets(positions: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return (n, n) arrays: the vector from i to j in x and y, and the distance, infinite to itself."""
+    """Return the vectors from i to j (x and y) and their lengths, shape (n, n); the diagonal is infinite."""
     dx, dy = (positions[None, :, k] - positions[:, None, k] for k in (0, 1))
     distance = np.hypot(dx, dy)
     np.fill_diagonal(distance, np.inf)
@@ -60,7 +60,7 @@ def translate(positions: Floats, wanted: Floats, ground: Ground) -> None:
 
 
 def meet_bodies(positions: Floats, wanted: Floats, ground: Ground) -> tuple[list[list[Contact]], Floats]:
-    """Return each robot's contacts with others, and by how much others shove it (n, 2)."""
+    """Return each robot's contacts with others, and its displacement by others, shape (n, 2)."""
     dx, dy, distance = offsets(positions)
     normal = np.stack((dx, dy), axis=2) / distance[:, :, None]
     approach = (wanted[:, None, :] * normal).sum(axis=2)  # of i towards j
@@ -101,9 +101,9 @@ def slide(want: Floats, contacts: list[Contact], friction: float) -> Floats:
 
 
 def relax(positions: Floats, ground: Ground) -> None:
-    """Part overlapping bodies by equal shares, all at once, until no overlap exceeds the tolerance.
+    """Part all overlapping bodies together by equal shares until no overlap exceeds the tolerance.
 
-    A round ends when the watched overlaps are small enough; the next looks at all pairs again.
+    A round ends when the overlaps of the watched pairs are small; the next round considers all pairs.
     """
     limit = ground.half - ground.radius
     np.clip(positions, -limit, limit, out=positions)
@@ -127,7 +127,7 @@ def relax(positions: Floats, ground: Ground) -> None:
             positions += last
             np.clip(positions, -limit, limit, out=positions)
             passes += 1
-    raise AssertionError("the bodies do not come apart")
+    raise AssertionError("the relaxation does not converge")
 
 
 def _momentum(passes: int, ground: Ground) -> float:
@@ -141,7 +141,7 @@ def _overlaps(positions: Floats, ground: Ground) -> Floats:
 
 
 def _halves(positions: Floats, overlap: Floats) -> Floats:
-    """Return each body's correction: half of each of its overlaps, of three and more twice their mean."""
+    """Return each body's correction: half the sum of its overlaps; for three or more, their mean."""
     dx, dy, distance = offsets(positions)
     share = -0.5 * overlap / distance
     count = (overlap > NO_OVERLAP).sum(axis=1)

@@ -1,6 +1,6 @@
 """One control period in plain numpy, written from the specification (sections 2.2, 2.3), not from the kernel.
 
-All pairs, no neighbour lists, no compiled code, nothing kept between periods but what the robots hold.
+It compares all pairs, without neighbour lists or compiled code, and keeps only the state of the robots.
 """
 
 import math
@@ -20,9 +20,8 @@ from tests.reference.contacts import Ground, offsets, translate
 BEARINGS = 2 * math.pi / SENSORS * np.arange(SENSORS)
 """Directions of the sensors, relative to the heading (rad)."""
 
-
 EQUALLY_NEAR = 1e-12
-"""Distances that differ by less (m) are equal: of two robots that touch it, the last bit makes one nearer."""
+"""Maximum difference of equal distances (m): rounding makes one of two touching robots nearer."""
 
 
 class Event(NamedTuple):
@@ -163,7 +162,7 @@ class ReferenceKernel:
         return False
 
     def _wall_along(self, place: Floats, direction: float) -> tuple[float, float]:
-        """Return how far a ray from `place` goes, and the direction of the wall that stops it."""
+        """Return the length of a ray from `place` to a wall, and the outward direction of that wall."""
         hits = []
         for outwards in (0.0, math.pi / 2, math.pi, -math.pi / 2):
             towards = math.cos(direction - outwards)

@@ -37,19 +37,19 @@ def unit(angle: float) -> Floats:
 
 
 def make_scene(game: Game, positions: ArrayLike, headings: ArrayLike, stride: ArrayLike) -> Scene:
-    """Put robots that only drive into a game, those of S1 first."""
+    """Return a scene of robots without decisions, those of S1 first."""
     sizes = [swarm.size for swarm in game.swarms]
     swarm_of = np.repeat(np.arange(len(sizes)), sizes)
     places, directions = (np.array(each, dtype=np.float64) for each in (positions, headings))
     states = RobotStates(places, swarm_of, directions)
     states.robots["stride"] = stride
-    states.robots["phase"] = ACTION  # asks for nothing
+    states.robots["phase"] = ACTION  # has no events
     return Scene(game, game.arena(0), states)
 
 
 @st.composite
 def games(draw: st.DrawFn, largest: int = 60) -> Game:
-    """Draw a game: one to five swarms, either body, the parameters that the kernel reads."""
+    """Draw a game: number of swarms, body and the parameters that the kernel reads."""
     k = draw(st.integers(1, 5))
     n = draw(st.integers(k, largest))
     drive_action = draw(st.sampled_from((0.6, 0.4)))
@@ -77,8 +77,8 @@ def games(draw: st.DrawFn, largest: int = 60) -> Game:
 def scenes(draw: st.DrawFn, largest: int = 60) -> Scene:
     """Draw a game and a state of its robots.
 
-    Continuous values come from a numpy generator with a drawn seed: no two distances are equal or round, so
-    the result does not depend on the last bit.
+    Continuous values come from a numpy generator with a drawn seed. Thus no two distances are equal, and
+    rounding has no effect on the result.
     """
     game = draw(games(largest))
     draws = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
@@ -99,7 +99,7 @@ def scenes(draw: st.DrawFn, largest: int = 60) -> Scene:
 def crowd(
     draws: np.random.Generator, n: int, radius: float, half: float, crowding: float, gap: float
 ) -> Floats:
-    """Place bodies one by one: each with probability `crowding` about to touch an earlier one or a wall."""
+    """Place bodies one by one, each with probability `crowding` within `gap` (m) of an earlier one."""
     limit = half - radius
     positions = np.empty((n, 2))
     for robot in range(n):
@@ -119,18 +119,18 @@ def crowd(
 
 
 def clone(scene: Scene, order: Integers | None = None) -> Scene:
-    """Copy a scene, its robots numbered in another order: new number k is old number ``order[k]``."""
-    chosen = np.arange(len(scene.states.positions)) if order is None else order
-    robots = scene.states.robots[chosen]
-    new_number = np.append(np.argsort(chosen), -1)  # the last for an opponent of -1
-    states = RobotStates(scene.states.positions[chosen], robots["swarm"], robots["heading"])
+    """Copy a scene with its robots in another order: robot k of the copy is robot ``order[k]``."""
+    order = np.arange(len(scene.states.positions)) if order is None else order
+    robots = scene.states.robots[order]
+    new_number = np.append(np.argsort(order), -1)  # −1, no opponent, stays −1
+    states = RobotStates(scene.states.positions[order], robots["swarm"], robots["heading"])
     states.robots[:] = robots
     states.robots["opponent"] = new_number[robots["opponent"]]
     return replace(scene, states=states)
 
 
 def mirrored(scene: Scene) -> Scene:
-    """Mirror a scene: left is right."""
+    """Mirror a scene at the y-axis."""
     image = clone(scene)
     robots = image.states.robots
     image.states.positions[:, 0] *= -1
@@ -149,22 +149,22 @@ def game_of(n: int, friction: float = 0.18, push_share: float = 0.0) -> Game:
 
 def play_period(scene: Scene) -> dict[tuple[int, int], tuple[int, int, int, float]]:
     """Play one period without decisions; return its events by (robot, kind)."""
-    kernel, told = scene.kernel(), {}
+    kernel, events = scene.kernel(), {}
     while size := kernel.advance(0, 1)[1]:
         for robot, kind, other, active, vacant, angle in kernel.events[:size].tolist():
-            told[robot, kind] = (
+            events[robot, kind] = (
                 other if kind in (CONFLICT, PICK_UP) else 0,
                 active if kind == CONFLICT else 0,
                 vacant if kind == CONFLICT else 0,
                 angle if kind in (CONFLICT, HOMING) else 0.0,
             )
-    return told
+    return events
 
 
 def crowded(scene: Scene) -> Scene:
-    """Play two periods, after which many bodies touch, and have the robots perceive nothing from now on.
+    """Play two periods, after which many bodies touch; afterwards, robots have no events.
 
-    A robot that touches two has no nearest one: the last bit would choose.
+    (Rounding would decide which of two touching robots is the nearest.)
     """
     for _ in range(2):
         play_period(scene)

@@ -58,7 +58,6 @@ def test_numpy_numbers_are_accepted() -> None:
     [
         ({"n": 1}, "n=1: must be a whole number ≥ 2"),
         ({"n": 0}, "n=0: "),
-        ({"n": -4}, "n=-4: "),
         ({"n": 10**400}, f"n={10**400}: must be at most 1000000"),
         ({"n": 5.5}, "n=5.5: must be a whole number"),
         ({"n": math.nan}, "n=nan: "),
@@ -69,7 +68,6 @@ def test_numpy_numbers_are_accepted() -> None:
         ({"shares": "7"}, "shares='7': must be 2 whole numbers"),
         ({"shares": "7:6:5"}, "shares='7:6:5': must be 2 whole numbers"),
         ({"shares": "7:0"}, "shares='7:0': must be 2 whole numbers ≥ 1"),
-        ({"shares": "7:-6"}, "shares='7:-6': "),
         ({"shares": "7:x"}, "shares='7:x': must be 2 whole numbers ≥ 1 separated by ':'"),
         ({"shares": "7:6.5"}, "shares='7:6.5': "),
         ({"n": 4, "shares": "1:100"}, "size=0: must be greater than or equal to 1"),

@@ -22,15 +22,12 @@ def test_every_condition_is_expanded_at_every_point() -> None:
     base = Condition(name="base", swarms=(AVOID, LEARNER), duration=60.0)
     other = base.replace(name="", swarms=(LEARNER, AVOID), parameters="argos")
     grid = {"side": [2, 3.5], "reward.delta": [0.02, 0.2]}
-    conditions = Scenario(
-        id="own", title="Own", conditions=(base, other), densities=(6,), grid=grid
-    ).conditions
-    points = [(side, delta) for side in (2, 3.5) for delta in (0.02, 0.2)]
-    names = [f"side={side}, reward.delta={delta}" for side, delta in points]
+    own = Scenario(id="own", title="Own", conditions=(base, other), densities=(6,), grid=grid)
+    conditions = own.conditions
+    points = [{"side": side, "reward.delta": delta} for side in (2, 3.5) for delta in (0.02, 0.2)]
+    names = [", ".join(f"{field}={value}" for field, value in point.items()) for point in points]
     assert [each.name for each in conditions] == [*(f"base, {name}" for name in names), *names]
-    assert [each.grid_values for each in conditions] == [
-        {"side": s, "reward.delta": d} for s, d in points
-    ] * 2
+    assert [each.grid_values for each in conditions] == points * 2
     assert [each.game(6).side for each in conditions] == [2.0, 2.0, 3.5, 3.5] * 2
     assert conditions[1].swarms[1].policy == "inter-learner(rule='greedy', reward='wlu(delta=0.2)')"
     assert conditions[1].swarms[0] == AVOID
