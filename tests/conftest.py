@@ -13,7 +13,7 @@ from kswarms.model.description.game import Game, Swarm
 from kswarms.model.description.parameters import PRESETS
 from kswarms.model.game_model import GameModel
 
-# The first example of a test may compile the kernel: no deadline can tell that from a slow test.
+# The first example of a test may compile the kernel, which takes longer than any useful deadline.
 settings.register_profile("kswarms", deadline=None)
 settings.load_profile("kswarms")
 

@@ -101,7 +101,7 @@ def test_times_and_pucks_of_the_measured_game_add_up(policies: str, end: dict[st
     check_times_and_pucks(play(game(*policies.split(","), **end)))
 
 
-def test_a_running_action_is_split_play_learning_phase() -> None:
+def test_a_running_action_is_split_at_the_switch() -> None:
     model = play_learning_phase(game("attack", "attack"))
     acting = [robot for robot in model.robots if robot.state == "A"]
     assert acting
@@ -112,7 +112,7 @@ def test_a_running_action_is_split_play_learning_phase() -> None:
         assert (sum(robot.times()[0]), robot.times()[1]) == (1, 0)
 
 
-# What is learned.
+# Learned values.
 
 
 @pytest.mark.parametrize("policy", ["learner", "inter-learner", "learner(rule='uniform-random')"])
@@ -155,7 +155,7 @@ def test_the_conflict_open_at_the_switch_gets_no_reward(seed: int) -> None:
         assert math.isnan(row["reward"]) == math.isnan(row["q"]) == is_open
         ends = row["start"] + row["t_a"] + row["t_p"]
         assert ends == pytest.approx(LEARNING) if is_open else ends < LEARNING - 0.05
-    # No bandit counts it.
+    # The bandits do not count it.
     for robot in model.members[1]:
         rewarded = sum(row["robot"] == robot.index for row in learned) - 1
         assert sum(arm["count"] for arm in snapshot_of(robot.policy)) == rewarded
@@ -176,7 +176,7 @@ def test_the_first_conflict_of_the_measured_game_rewards_nothing() -> None:
                 assert following["start"] >= LEARNING
 
 
-# How the phases end.
+# Ends of the phases.
 
 
 def test_simpy_events_end_both_phases() -> None:

@@ -56,7 +56,7 @@ def test_the_scores_agree(comparison: pd.DataFrame) -> None:
 @pytest.mark.parametrize(
     ("scenario", "change", "n", "verdict"),
     [
-        ("argos-attack-attack", "push_share=0.5", 46, "score_fits"),  # robots pass
+        ("argos-attack-attack", "push_share=0.5", 46, "score_fits"),  # robots push others
         ("argos-avoid-avoid", "conflict_distance=0.05", 26, "share_fits"),  # fewer conflicts
     ],
 )

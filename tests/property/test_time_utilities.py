@@ -125,7 +125,7 @@ def test_the_opponents_advantage(n: tuple[int, int], alpha: float, beta: float, 
 
 
 @given(st.integers(1, 8), seconds, seconds, weights, weights, weights)
-def test_a_swarm_that_is_alone(
+def test_the_wlu_of_a_single_swarm(
     n_k: int, t_a: float, t_p: float, alpha_i: float, alpha_k: float, beta: float
 ) -> None:
     crowd = Crowd(n_k, 0, alpha_i, beta, alpha_k, beta)
