@@ -21,8 +21,8 @@ from kswarms import ForagingModel
 model = ForagingModel(n=20, policies="avoid,attack", duration=600, seed=1)
 
 # %% [markdown]
-# `step()` plays one sampling period of 10 s. The model is a Mesa model and its robots are Mesa agents, so
-# everything can be inspected in between.
+# `step()` plays one sampling period of 10 s. The model is a Mesa model and its robots are Mesa agents. You can
+# inspect them between two steps. State P is foraging (program), state A a conflict (action).
 
 # %%
 for _ in range(6):
@@ -31,8 +31,8 @@ robot = model.robots[0]
 print(f"t = {model.time} s: robot 0 at {robot.position.round(2)}, state {robot.state}, puck {robot.carrying}")
 
 # %% [markdown]
-# The arena now: supply stations are black, bases have the colour of their swarm. A line is a robot's
-# heading, a black dot a puck.
+# This cell draws the arena. Supply stations are black, bases have the colour of their swarm. A white line
+# shows the heading of a robot, a black dot a puck that it carries.
 
 # %%
 COLOURS = ("tab:green", "tab:red")
@@ -61,7 +61,8 @@ figure, axes = plt.subplots(figsize=(4.5, 4.5))
 draw_arena(model, axes)
 
 # %% [markdown]
-# Play to the end. Mesa's DataCollector holds the samples.
+# Play to the end. Mesa's DataCollector has a sample for each sampling period. `sud` is the Swarm Utility
+# Difference, the pucks of a swarm minus those of all others. `share_a` is the share of time in conflict.
 
 # %%
 model.play()
@@ -79,14 +80,15 @@ left.legend()
 right.legend();
 
 # %% [markdown]
-# The result of a game has one row for each swarm: pucks, the difference to all others (SUD), and
-# robot-seconds of conflicts within the swarm, with others, and of the program.
+# The result of a game has one row for each swarm. It has the robot-seconds in conflicts within the swarm
+# (`t_a_intra`), in conflicts with other swarms (`t_a_inter`), and in the program (`t_p`).
 
 # %%
 pd.DataFrame(model.results()).set_index("swarm").T
 
 # %% [markdown]
-# Which policy is better depends on the number of robots. Six games of 300 s at each of three densities:
+# Which policy is better depends on the number of robots. The last cell plays six games of 300 s at each of
+# three numbers of robots.
 
 # %%
 rows = []

@@ -8,9 +8,9 @@
 # %% [markdown]
 # # Learning
 #
-# A learner has one bandit for each swarm-ID that it can meet, with one arm for each action. Here S2 learns
-# whether to flee from S1 or to fight it; within its swarm it flees. S1 attacks. The learning phase takes
-# 1,000 s. Then a game of 300 s is measured, in which learners use what they learned.
+# A learner has one multi-armed bandit for each swarm that it learns about, with one arm for each action. Here
+# S2 learns whether to flee from S1 or to fight it. Within its swarm it flees. S1 attacks. The learning phase
+# takes 1,000 s. Then a game of 300 s is measured, in which learners use what they learned.
 
 # %%
 import matplotlib.pyplot as plt
@@ -27,15 +27,17 @@ model = ForagingModel(
 model.play()
 
 # %% [markdown]
-# This is what one robot has learned: for each arm the sums of rewards and times, the number of choices, and
-# Q = ΣR / ΣT (Eq. 4.15). After the learning phase it chooses the arm with the greatest Q.
+# The next table shows what one robot has learned. Each arm has the sum of its rewards, the sum of its times,
+# the number of its choices, and Q = ΣR / ΣT, the mean reward per second (Eq. 4.15 of the thesis). After the
+# learning phase the robot chooses the arm with the greatest Q.
 
 # %%
 robot = model.members[1][0]
 pd.DataFrame(robot.policy.snapshot())
 
 # %% [markdown]
-# Every conflict was recorded. A learner's conflict with S1 has a reward, and Q of its arm afterwards.
+# Every conflict was recorded. A learner's conflict with S1 has a reward, and the value Q of its arm after the
+# conflict. `t_a` is the time of the action, `t_p` the time until the next conflict.
 
 # %%
 conflicts = model.datacollector.get_table_dataframe("conflicts")
@@ -43,8 +45,10 @@ learned_from = conflicts[(conflicts["phase"] == "learning") & conflicts["reward"
 learned_from[["robot", "start", "action", "t_a", "t_p", "active", "reward", "q"]].head()
 
 # %% [markdown]
-# The course of learning of one robot: Q of both arms, and its choices. The bonus of UCB, √(γ ln N / N(a)),
-# shrinks with each choice of an arm and grows while the arm is not chosen.
+# The next figure shows how one robot learns: each point is a choice, with Q of the chosen arm. The rule UCB
+# (upper confidence bound) chooses the arm with the greatest sum of Q and a bonus √(γ ln N / N(a)). N(a) is the
+# number of choices of the arm, N that of all choices. The bonus of an arm shrinks with each of its choices and
+# grows while it is not chosen.
 
 # %%
 own = learned_from[learned_from["robot"] == robot.index]
@@ -56,8 +60,8 @@ axes.set(xlabel="time (s)", ylabel="Q of the arm after the conflict", title=f"ro
 axes.legend();
 
 # %% [markdown]
-# The whole swarm: the share of fights among its choices, in windows of 100 s. Learners never stop exploring
-# in this phase, so the share does not reach 0 or 1.
+# For the whole swarm, this figure shows the share of fights among the choices, in windows of 100 s. Learners
+# explore during the whole phase, so the share does not reach 0 or 1.
 
 # %%
 share = learned_from.assign(
@@ -68,15 +72,15 @@ share.groupby("window")["fight"].mean().plot(ax=axes, marker="o")
 axes.set(xlabel="time (s)", ylabel="share of fights", ylim=(0, 1));
 
 # %% [markdown]
-# What the swarm learned: for each action, the share of robots whose arm with the greatest Q it is.
+# The column `share` shows what the swarm learned: the share of robots for which the action has the greatest Q.
 
 # %%
 pd.DataFrame(policy_rows(model))
 
 # %% [markdown]
-# The result depends on the number of robots. The same against an avoiding and an attacking swarm, at three
-# densities with two seeds each: in small crowds robots learn to flee, in large ones to fight. (`kswarms run
-# table-6.1` does this at all ten densities, with 3,000 s of learning.)
+# The result depends on the number of robots N. The last cell lets a swarm learn against an avoiding and an
+# attacking swarm, at three values of N with two seeds each. At low N robots learn to flee, at high N to fight.
+# `kswarms run table-6.1` does this at all ten values of N, with 3,000 s of learning.
 
 # %%
 rows = []

@@ -8,7 +8,7 @@
 # %% [markdown]
 # # The interaction network
 #
-# Which robots met, where, and which got stuck together: the recorded conflicts of a game show it.
+# The recorded conflicts of a game show which robots met, where they met, and which blocked each other.
 
 # %%
 # %matplotlib inline
@@ -27,27 +27,29 @@ conflicts = model.datacollector.get_table_dataframe("conflicts")
 conflicts[["robot", "swarm", "opponent", "opponent_swarm", "start", "x", "y", "action", "t_a", "t_p"]].head(3)
 
 # %% [markdown]
-# `kswarms.read_conflicts(directory)` reads the conflicts that `kswarms run … --record conflicts` wrote;
-# select one `run`.
+# `kswarms.read_conflicts(directory)` reads the conflicts that `kswarms run … --record conflicts` wrote. Select
+# the rows of one `run`.
 #
 # ## Which robots met
 #
-# The network is a networkx graph. Its nodes are robots. An edge joins two robots that met; it has the
-# number of their conflicts and the time in conflict. All functions of networkx can be applied to it.
+# The network is a networkx graph. Its nodes are robots. An edge joins two robots that met. It has the number
+# of their conflicts and the time in conflict. You can use all functions of networkx.
 
 # %%
 network = meeting_network(conflicts)
 pd.Series(describe_network(network)).round(3)
 
 # %% [markdown]
-# `assortativity` is Newman's, by swarm-ID. Above `chance`, robots meet their own swarm more often than
-# others; below it, less often. `assortativity_time` weights pairs by their time in conflict.
+# `assortativity` is Newman's assortativity coefficient by swarm. `chance` is its value if all robots meet
+# equally often. Above `chance`, robots meet their own swarm more often than others; below it, less often.
+# `assortativity_time` weights pairs by their time in conflict.
 
 # %%
 network_figure(network, "36 robots, S1 avoids, S2 attacks")
 
 # %% [markdown]
-# The same by swarms, in robot-seconds of conflict. Conflicts within a swarm count from both sides.
+# The next table has the time in conflict between swarms, in robot-seconds. Conflicts within a swarm count twice,
+# once for each robot.
 
 # %%
 names = ["S1", "S2"]
@@ -65,7 +67,8 @@ jams_figure(jams(conflicts), "36 robots, S1 avoids, S2 attacks")
 # %% [markdown]
 # ## Where conflicts happen
 #
-# Conflicts begun in each cell of 5 × 5 cm, on a logarithmic scale: all of them, and those with each action.
+# The maps show how many conflicts began in each cell of 5 × 5 cm, on a logarithmic scale: all conflicts, then
+# those with each action.
 
 # %%
 heat_map_figure(conflicts, "36 robots, S1 avoids, S2 attacks", places=model.arena)
@@ -73,7 +76,8 @@ heat_map_figure(conflicts, "36 robots, S1 avoids, S2 attacks", places=model.aren
 # %% [markdown]
 # ## What changes with the number of robots
 #
-# The same measures for three pairs of policies, at three densities.
+# The last cell computes the share of conflict time between swarms and the share of robots in jams, for three
+# pairs of policies and three numbers of robots.
 
 # %%
 rows = []

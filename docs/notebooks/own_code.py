@@ -8,9 +8,9 @@
 # %% [markdown]
 # # User-defined policies, rewards and rules
 #
-# A policy is a class in a file of your own. Its name, with the path of the file, can stand wherever the
-# name of a policy can. The files used here are in `docs/examples`. [Extend](../extending.md) describes what
-# each class needs.
+# A policy is a class in a file of your own. You can use its name, with the path of the file, wherever you can
+# use the name of a policy. The files of this notebook are in `docs/examples`. [Extend](../extending.md)
+# describes what each class needs.
 
 # %%
 from functools import partial
@@ -38,7 +38,7 @@ pd.DataFrame(model.results())[["swarm", "policy", "pucks", "conflicts_inter"]]
 # ## Check it
 #
 # `kswarms.agents.conformance` has the checks that every policy, reward and rule must pass: the same seed
-# gives the same choices, robots share no state, copies behave alike, and so on. A failing check says what
+# gives the same choices, robots share no state, copies behave alike, and others. A failing check says what
 # is wrong.
 
 # %%
@@ -49,7 +49,8 @@ for check in POLICY_CHECKS:
 # %% [markdown]
 # ## Compare it
 #
-# Which patience is best, at which number of robots? Three seeds each; `patience=0` always fights.
+# Which patience is best, and at which number of robots? This cell plays three seeds of each combination. With
+# `patience=0` the swarm always fights the other swarm. `sud` is the difference of the scores.
 
 # %%
 rows = []
@@ -69,7 +70,7 @@ axes.set(ylabel="pucks ahead of the avoiding swarm");
 # %% [markdown]
 # ## A reward and a rule
 #
-# A learner takes the names of both as arguments.
+# A learner takes the names of a reward and a selection rule as arguments. WLU and UCB are the defaults.
 
 # %%
 print(Path(EXAMPLES, "haste.py").read_text())

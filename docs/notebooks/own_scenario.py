@@ -8,8 +8,9 @@
 # %% [markdown]
 # # Your own scenario and sweep
 #
-# A scenario is data: conditions (curves), numbers of robots, and seeds. This one measures the effect of a
-# higher speed on a swarm that avoids.
+# A scenario describes an experiment: conditions (curves of a figure), numbers of robots, and seeds. This
+# scenario measures the effect of a higher speed on a swarm that avoids. `drive` is the speed as a fraction of
+# the top speed.
 
 # %%
 import matplotlib.pyplot as plt
@@ -37,14 +38,14 @@ scenario = Scenario(
 )
 
 # %% [markdown]
-# As TOML it is a file that `kswarms run faster.toml` plays:
+# A scenario can be written as TOML. If you save this text as `faster.toml`, `kswarms run faster.toml` plays it:
 
 # %%
 print(scenario.to_toml())
 
 # %% [markdown]
-# Its runs are conditions × densities × seeds. A digest of everything that is simulated names each run. In a
-# notebook they are played in its own process; the command line uses one process for each CPU.
+# The scenario has a run for each combination of condition, number of robots and seed. Here the runs are played
+# in the process of the notebook. The command line uses one process for each CPU.
 
 # %%
 runs = expand([scenario])
@@ -56,8 +57,8 @@ results = pd.DataFrame(rows)
 results.pivot_table(index=["condition", "N"], columns="swarm", values="pucks")
 
 # %% [markdown]
-# Games with the same seed start in the same state. So the conditions are compared seed by seed, and the
-# difference is the effect of speed.
+# Games with the same seed start in the same state. The conditions are therefore compared seed by seed. The
+# difference is the effect of the speed.
 
 # %%
 by_seed = results.pivot_table(index=["N", "seed", "swarm"], columns="condition", values="pucks")

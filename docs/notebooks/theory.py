@@ -8,8 +8,8 @@
 # %% [markdown]
 # # Theory and contributions
 #
-# What is a robot worth to its swarm? Three answers, from the ideal to the real: a game in normal form,
-# utilities measured on a recorded game, and the same game without the robot. [The theory and its
+# This notebook computes what a robot is worth to its swarm in three ways: from a game in normal form, from the
+# times of a recorded game, and from the same game without the robot. [The theory and its
 # functions](../theory.md) and [What a robot contributed](../contribution.md) have the details.
 
 # %%
@@ -43,8 +43,8 @@ between = zero_sum(ACTIONS, ACTIONS, [[pair_utility(spent[a], spent[b]) for b in
 pd.DataFrame(between.own.round(9), index=ACTIONS, columns=ACTIONS)
 
 # %% [markdown]
-# For three swarms these games form a *polymatrix* game, with one game on each edge and one on each loop for
-# meetings within a swarm. Its edges are zero-sum, its loops are not.
+# For three swarms these games form a *polymatrix* game, a graph with swarms as nodes. Each edge is the game
+# between two swarms and is zero-sum. Each loop is the game within a swarm and is not zero-sum.
 
 # %%
 pairs = [(k, m) for k in (1, 2, 3) for m in (1, 2, 3) if k <= m]
@@ -55,8 +55,8 @@ draw_polymatrix(graph)
 # %% [markdown]
 # ## Utilities of a recorded game
 #
-# In a simulated game, these times result from motion and contacts. Eight robots that avoid meet eight that
-# attack, and every conflict is recorded.
+# In a simulated game, these times result from motion and contacts. Here a swarm of eight avoiding robots plays
+# against one of eight attacking robots, and every conflict is recorded.
 
 # %%
 swarms = (Swarm(policy="avoid", size=8), Swarm(policy="attack", size=8))
@@ -75,7 +75,8 @@ robots.head(3)
 utilities_by_swarm(robots)
 
 # %% [markdown]
-# The two Swarm Utility Differences cancel, as for any two swarms (Corollary 6).
+# `sud` is the Swarm Utility Difference, the utility of a swarm minus that of all others. For two swarms the
+# differences always sum to zero (Corollary 6).
 
 # %%
 figure, axes = plt.subplots(figsize=(5, 3.5))
@@ -86,9 +87,9 @@ axes.set(xlabel="utility of the robot, U (s)", ylabel="Wonderful Life Utility, W
 # ## The same game without a robot
 #
 # W estimates a difference: SUD with the robot minus SUD without it (Eq. 3.9). A simulation can measure it.
-# Here each of two robots of S2 is absent from the same six games. The seeds are the same, so the games are
-# equal until the absent robot would have come near another robot. (`kswarms contribution fig-6.4b` does
-# this for a scenario.)
+# Here six games are played with all robots, and again without robot 8 and without robot 9 of S2. The seeds are
+# the same, so the games are equal until the absent robot would have come near another robot. `kswarms
+# contribution fig-6.4b` does this for a scenario.
 
 # %%
 rows = contributions(game, robots_of(game, "8,9"), range(6), label=("avoid-attack", ""), time_sud=time_sud)
@@ -96,8 +97,8 @@ question = of_question(pd.DataFrame(rows))
 question[["seed", "robot", "sud", "sud_without", "pucks", "reward"]].head(4).round(2)
 
 # %% [markdown]
-# `pucks` is the contribution, `reward` the robot's reward in the game. The means over the seeds follow,
-# with their 95 % intervals. Robot −1 is the mean robot of the two:
+# `pucks` is the contribution, `reward` the robot's reward in the game. The next table has the means over the
+# seeds with their 95 % intervals. Robot −1 is the mean of the two robots:
 
 # %%
 means = mean_contributions(question)
@@ -107,8 +108,8 @@ means[["robot", "pucks", "pucks_low", "pucks_high", "reward", "reward_low", "rew
 # Six seeds leave a wide interval. A single difference is mostly chance, because the two games soon diverge.
 #
 # The thesis assumes that without a robot, all time that others spent in conflicts with it would be program
-# time (Eqs. 4.9 to 4.11). The *share freed* measures this: 1 if the assumption holds, 0 if other conflicts
-# took their place.
+# time (Eqs. 4.9 to 4.11). The *share freed* (`share`) measures this. It is 1 if the assumption is true, and 0
+# if other conflicts take the place of these conflicts.
 
 # %%
 assumption(question)[["others", "t_a", "t_a_without", "met", "share", "share_low", "share_high"]].round(2)
