@@ -21,8 +21,8 @@ from kswarms import ForagingModel
 model = ForagingModel(n=20, policies="avoid,attack", duration=600, seed=1)
 
 # %% [markdown]
-# `step()` plays one sampling period of 10 s. The model is a Mesa model and its robots are Mesa agents. You can
-# inspect them between two steps. State P is foraging (program), state A a conflict (action).
+# `step()` plays one sampling period of 10 s. The model is a Mesa model and its robots are Mesa agents. You
+# can inspect them between two steps. State P is foraging (program), state A a conflict (action).
 
 # %%
 for _ in range(6):

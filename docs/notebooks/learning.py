@@ -46,9 +46,9 @@ learned_from[["robot", "start", "action", "t_a", "t_p", "active", "reward", "q"]
 
 # %% [markdown]
 # The next figure shows how one robot learns: each point is a choice, with Q of the chosen arm. The rule UCB
-# (upper confidence bound) chooses the arm with the greatest sum of Q and a bonus √(γ ln N / N(a)). N(a) is the
-# number of choices of the arm, N that of all choices. The bonus of an arm shrinks with each of its choices and
-# grows while it is not chosen.
+# (upper confidence bound) chooses the arm with the greatest sum of Q and a bonus √(γ ln N / N(a)). N(a) is
+# the number of choices of the arm, N that of all choices. The bonus of an arm shrinks with each of its
+# choices and grows while it is not chosen.
 
 # %%
 own = learned_from[learned_from["robot"] == robot.index]
@@ -72,15 +72,16 @@ share.groupby("window")["fight"].mean().plot(ax=axes, marker="o")
 axes.set(xlabel="time (s)", ylabel="share of fights", ylim=(0, 1));
 
 # %% [markdown]
-# The column `share` shows what the swarm learned: the share of robots for which the action has the greatest Q.
+# The column `share` shows what the swarm learned: the share of robots for which the action has the greatest
+# Q.
 
 # %%
 pd.DataFrame(policy_rows(model))
 
 # %% [markdown]
 # The result depends on the number of robots N. The last cell lets a swarm learn against an avoiding and an
-# attacking swarm, at three values of N with two seeds each. At low N robots learn to flee, at high N to fight.
-# `kswarms run table-6.1` does this at all ten values of N, with 3,000 s of learning.
+# attacking swarm, at three values of N with two seeds each. At low N robots learn to flee, at high N to
+# fight. `kswarms run table-6.1` does this at all ten values of N, with 3,000 s of learning.
 
 # %%
 rows = []

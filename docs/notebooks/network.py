@@ -27,8 +27,8 @@ conflicts = model.datacollector.get_table_dataframe("conflicts")
 conflicts[["robot", "swarm", "opponent", "opponent_swarm", "start", "x", "y", "action", "t_a", "t_p"]].head(3)
 
 # %% [markdown]
-# `kswarms.read_conflicts(directory)` reads the conflicts that `kswarms run … --record conflicts` wrote. Select
-# the rows of one `run`.
+# `kswarms.read_conflicts(directory)` reads the conflicts that `kswarms run … --record conflicts` wrote.
+# Select the rows of one `run`.
 #
 # ## Which robots met
 #
@@ -48,8 +48,8 @@ pd.Series(describe_network(network)).round(3)
 network_figure(network, "36 robots, S1 avoids, S2 attacks")
 
 # %% [markdown]
-# The next table has the time in conflict between swarms, in robot-seconds. Conflicts within a swarm count twice,
-# once for each robot.
+# The next table has the time in conflict between swarms, in robot-seconds. Conflicts within a swarm count
+# twice, once for each robot.
 
 # %%
 names = ["S1", "S2"]

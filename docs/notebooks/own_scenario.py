@@ -38,14 +38,15 @@ scenario = Scenario(
 )
 
 # %% [markdown]
-# A scenario can be written as TOML. If you save this text as `faster.toml`, `kswarms run faster.toml` plays it:
+# A scenario can be written as TOML. If you save this text as `faster.toml`, `kswarms run faster.toml` plays
+# it:
 
 # %%
 print(scenario.to_toml())
 
 # %% [markdown]
-# The scenario has a run for each combination of condition, number of robots and seed. Here the runs are played
-# in the process of the notebook. The command line uses one process for each CPU.
+# The scenario has a run for each combination of condition, number of robots and seed. Here the runs are
+# played in the process of the notebook. The command line uses one process for each CPU.
 
 # %%
 runs = expand([scenario])

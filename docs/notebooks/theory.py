@@ -8,8 +8,8 @@
 # %% [markdown]
 # # Theory and contributions
 #
-# This notebook computes what a robot is worth to its swarm in three ways: from a game in normal form, from the
-# times of a recorded game, and from the same game without the robot. [The theory and its
+# This notebook computes what a robot is worth to its swarm in three ways: from a game in normal form, from
+# the times of a recorded game, and from the same game without the robot. [The theory and its
 # functions](../theory.md) and [What a robot contributed](../contribution.md) have the details.
 
 # %%
@@ -55,8 +55,8 @@ draw_polymatrix(graph)
 # %% [markdown]
 # ## Utilities of a recorded game
 #
-# In a simulated game, these times result from motion and contacts. Here a swarm of eight avoiding robots plays
-# against one of eight attacking robots, and every conflict is recorded.
+# In a simulated game, these times result from motion and contacts. Here a swarm of eight avoiding robots
+# plays against one of eight attacking robots, and every conflict is recorded.
 
 # %%
 swarms = (Swarm(policy="avoid", size=8), Swarm(policy="attack", size=8))
@@ -87,8 +87,8 @@ axes.set(xlabel="utility of the robot, U (s)", ylabel="Wonderful Life Utility, W
 # ## The same game without a robot
 #
 # W estimates a difference: SUD with the robot minus SUD without it (Eq. 3.9). A simulation can measure it.
-# Here six games are played with all robots, and again without robot 8 and without robot 9 of S2. The seeds are
-# the same, so the games are equal until the absent robot would have come near another robot. `kswarms
+# Here six games are played with all robots, and again without robot 8 and without robot 9 of S2. The seeds
+# are the same, so the games are equal until the absent robot would have come near another robot. `kswarms
 # contribution fig-6.4b` does this for a scenario.
 
 # %%
