@@ -20,18 +20,18 @@ def fast(policy: str, **rule: Any) -> SwarmRule:
     return SwarmRule(policy=policy, drive=0.7, **rule)
 
 
-def learner(about: str = "inter-learner", reward: str = "wlu", rule: str = "ucb", **rest: Any) -> SwarmRule:
-    """Return a swarm of learners; `about` is the name of their policy, `rest` are its other fields."""
-    return swarm(_call(about, {"reward": "wlu", "rule": "ucb"}, {"reward": reward, "rule": rule}), **rest)
+def learner(policy: str = "inter-learner", reward: str = "wlu", rule: str = "ucb", **rest: Any) -> SwarmRule:
+    """Return a swarm of learners; `rest` are further fields of the swarm."""
+    return swarm(_call(policy, {"reward": "wlu", "rule": "ucb"}, {"reward": reward, "rule": rule}), **rest)
 
 
 def reward_of(name: str = "wlu", **arguments: Any) -> str:
-    """Return the text of a reward, without arguments at their defaults."""
+    """Return the text of a reward without default arguments."""
     return _call(name, _defaults(REWARDS[name]), arguments)
 
 
 def rule_of(name: str, **arguments: Any) -> str:
-    """Return the text of a selection rule, without arguments at their defaults."""
+    """Return the text of a selection rule without default arguments."""
     return _call(name, _defaults(RULES[name]), arguments)
 
 
@@ -50,7 +50,7 @@ def curves(swarms: Mapping[str, tuple[SwarmRule, ...]], **world: Any) -> tuple[C
 
 
 def _call(name: str, defaults: Mapping[str, Any], arguments: Mapping[str, Any]) -> str:
-    """Return the text of a call without default arguments, so that equal games have equal texts."""
+    """Return the text of a call. It omits default arguments, so that equal games have equal texts."""
     given = []
     for key, value in arguments.items():
         default = defaults[key]

@@ -26,7 +26,7 @@ def _by_delta(first: SwarmRule, *deltas: float) -> dict[str, tuple[SwarmRule, ..
 
 
 def _three(second: SwarmRule) -> tuple[SwarmRule, ...]:
-    """Return `second` between the halves of a mixed swarm; S1 gets the extra robot of an odd number."""
+    """Return `second` as S2, between the two halves of a fast mixed swarm; S1 may have one robot more."""
     return FAST_AVOID, second.replace(share=2), fast("aggressive")
 
 

@@ -10,20 +10,20 @@ from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.description.toml_files import read_scenarios
 
-FIRST_SCENARIO: Final = "fig-6.1c"
+DEFAULT_SCENARIO: Final = "fig-6.1c"
 """Default scenario of `kswarms explore` and `kswarms film`."""
-USUAL_N: Final = 20
-"""Default number of robots of both; rounded to a multiple that the scenario allows."""
+DEFAULT_N: Final = 20
+"""Default number of robots of these commands; rounded to a number that the scenario allows."""
 
 
 def select_scenarios(ids: Iterable[str]) -> list[Scenario]:
-    """Return the scenarios of ids and ``.toml`` files, each once; a table stands for all its scenarios."""
+    """Return the scenarios of ids and ``.toml`` files, each once. The id of a table selects its scenarios."""
     found: dict[str, Scenario] = {}
     for name in ids:
         scenarios = read_scenarios(Path(name)) if name.endswith(".toml") else _from_catalogue(name)
         for scenario in scenarios:
             if found.setdefault(scenario.id, scenario) != scenario:
-                raise InputError("id", scenario.id, "must name one scenario, not two that differ")
+                raise InputError("id", scenario.id, "names two different scenarios")
     return list(found.values())
 
 
@@ -31,7 +31,7 @@ def _from_catalogue(name: str) -> list[Scenario]:
     if name not in CATALOGUE and name not in TABLES:
         near = difflib.get_close_matches(name, [*CATALOGUE, *TABLES], cutoff=0.5)
         hint = f"did you mean {' or '.join(near)}?" if near else "see `kswarms list`"
-        raise InputError("id", name, f"must be a scenario or table of the list; {hint}")
+        raise InputError("id", name, f"must be in the catalogue; {hint}")
     return [CATALOGUE[each] for each in (TABLES[name].scenarios if name in TABLES else [name])]
 
 
@@ -40,9 +40,9 @@ def with_densities_and_seeds(
 ) -> tuple[list[Scenario], list[str]]:
     """Return scenarios with other densities or seeds, and the ids of scenarios that are left out.
 
-    Without densities (numbers of robots) or seeds (games per density), each scenario keeps its own. With
-    `suitable_only`, densities that do not suit a scenario are dropped for it instead of refused, and a
-    scenario without a suitable density is left out.
+    Densities are numbers of robots, seeds are games per density. Each scenario keeps its own by default.
+    With `suitable_only`, each scenario ignores densities that it does not allow, and is left out if none
+    remains; otherwise such a density raises an `InputError`.
     """
     playable, left_out = [], []
     for scenario in scenarios:
@@ -56,5 +56,5 @@ def with_densities_and_seeds(
         except InputError as error:
             raise InputError(error.field, error.value, f"{error.allowed} ({scenario.id})") from None
     if not playable:
-        raise InputError("densities", ",".join(map(str, densities)), "must suit some scenario")
+        raise InputError("densities", ",".join(map(str, densities)), "must suit at least one scenario")
     return playable, left_out

@@ -9,7 +9,7 @@ import typer
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.limits import LAST_SEED, MOST_JOBS
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
-from kswarms.scenarios.catalogue.selection import FIRST_SCENARIO, USUAL_N, select_scenarios
+from kswarms.scenarios.catalogue.selection import DEFAULT_N, DEFAULT_SCENARIO, select_scenarios
 from kswarms.scenarios.runs.run import Run, digest
 
 CPUS: Final = os.cpu_count() or 1
@@ -40,7 +40,7 @@ def parse_directory(text: str) -> Path:
 
 _WATCHED: Final = (
     "Scenario or table of `kswarms list`, or my.toml; with --run, a results directory. "
-    f"[default: {FIRST_SCENARIO}]"
+    f"[default: {DEFAULT_SCENARIO}]"
 )
 Watched = Annotated[str | None, typer.Argument(metavar="ID|DIR", help=_WATCHED, autocompletion=complete_ids)]
 RunDigest = Annotated[
@@ -62,7 +62,7 @@ Seed = Annotated[
 def resolve_source(what: str | None, run: str) -> str | Run:
     """Return the id or file of a scenario, or the run of a results directory if a digest is given."""
     if not run:
-        return what or FIRST_SCENARIO
+        return what or DEFAULT_SCENARIO
     if what is None:
         raise InputError("run", run, "needs the results directory that has it")
     from kswarms.scenarios.watch.recorded_run import recorded_run
@@ -81,6 +81,6 @@ def resolve_run(what: str | None, run: str, condition: str | None, n: int | None
     found = select_scenarios([start])[0]
     name = found.conditions[0].name if condition is None else condition
     if n is None:
-        n = min(found.densities, key=lambda density: abs(density - USUAL_N))
+        n = min(found.densities, key=lambda density: abs(density - DEFAULT_N))
     game, seed = found.game(name, n), seed or 0
     return Run(digest(game, seed), game, seed, ((found.id, name),))

@@ -35,7 +35,7 @@ class SwarmRule(SwarmFields):
 
     @field_validator("policy", mode="before")
     @classmethod
-    def _require_text(cls, policy: Any) -> Any:
+    def _to_text(cls, policy: Any) -> Any:
         return policy if isinstance(policy, str) else "+".join(spec.text for spec in parse_policies(policy))
 
 
@@ -49,10 +49,10 @@ class Condition(GameFields):
     swarms : tuple of SwarmRule
         S1 to SK.
     multiple_of : int, optional
-        The number of robots must be a multiple of it. The default is the sum of the shares in lowest terms,
-        so that the proportions hold exactly.
+        The number of robots must be a multiple of it. The default is the sum of the shares in lowest terms;
+        the proportions then hold exactly.
     grid_point : tuple of (str, value)
-        Fields that the grid of the scenario sets, with their values; set by the scenario.
+        Fields that the grid of the scenario sets, with their values. The scenario fills it in.
     """
 
     name: str = Field(default="", max_length=LONGEST_NAME, pattern=ONE_LINE)
@@ -66,7 +66,7 @@ class Condition(GameFields):
         return dict(self.grid_point)
 
     def sizes(self, n: int) -> list[int]:
-        """Return the size of each swarm if there are `n` robots; `n` must suit the proportions."""
+        """Return the size of each swarm; raise an `InputError` if the shares do not allow `n` robots."""
         shares = [swarm.share for swarm in self.swarms]
         step = self.multiple_of or sum(shares) // math.gcd(*shares)
         sizes = apportion(n, shares) if n > 0 else [0]
@@ -83,14 +83,14 @@ class Condition(GameFields):
         )
         return Game(swarms=swarms, **self.game_fields())
 
-    def plain(self) -> dict[str, Any]:
-        """Return the values that differ from the defaults, with names of presets, in the order of TOML."""
-        plain = self.model_dump(mode="json", exclude_defaults=True)
-        if "parameters" in plain:
-            plain["parameters"] = text_of(self.parameters)
-        if BODIES.get(self.body.name) == self.body and "body" in plain:
-            plain["body"] = self.body.name
-        return dict(sorted(plain.items(), key=lambda item: (_is_table(item[1]), item[0] != "name")))
+    def non_defaults(self) -> dict[str, Any]:
+        """Return the non-default values for TOML: presets by name, tables last."""
+        values = self.model_dump(mode="json", exclude_defaults=True)
+        if "parameters" in values:
+            values["parameters"] = text_of(self.parameters)
+        if BODIES.get(self.body.name) == self.body and "body" in values:
+            values["body"] = self.body.name
+        return dict(sorted(values.items(), key=lambda item: (_is_table(item[1]), item[0] != "name")))
 
 
 def _is_table(value: object) -> bool:

@@ -1,4 +1,4 @@
-"""Grids: one condition becomes a condition for each combination of values of some fields."""
+"""Grids: a condition is expanded to a condition for each combination of values of some fields."""
 
 from collections.abc import Iterable, Mapping
 from itertools import product
@@ -21,11 +21,11 @@ _LEARNING: Final = ("reward", "rule")
 
 
 def expand_grid(conditions: Iterable[Condition], grid: Grid) -> tuple[Condition, ...]:
-    """Return a condition for each condition and each point of the grid; points of the grid are kept.
+    """Return each condition at each point of the grid. Conditions that are already at a point are kept.
 
-    Fields are those of a condition, such as ``side``; ``parameters.friction``; ``reward``, ``rule``,
-    ``reward.delta`` and ``rule.gamma`` of all learners; and those of a swarm, such as ``S1.drive``,
-    ``S2.policy`` and ``S2.reward.delta``.
+    A field belongs to a condition, such as ``side`` or ``parameters.friction``; to all learners: ``reward``,
+    ``rule``, ``reward.delta`` or ``rule.gamma``; or to a swarm, such as ``S1.drive``, ``S2.policy`` or
+    ``S2.reward.delta``.
     """
     conditions = tuple(conditions)
     for field, values in grid.items():
@@ -45,7 +45,7 @@ def expand_grid(conditions: Iterable[Condition], grid: Grid) -> tuple[Condition,
 
 
 def collapse_grid(conditions: tuple[Condition, ...], grid: Grid) -> tuple[Condition, ...]:
-    """Return the fewest conditions from which `expand_grid` makes these again."""
+    """Reverse `expand_grid`; return `conditions` unchanged if that is impossible."""
     first = tuple((field, values[0]) for field, values in grid.items())
     bases = tuple(
         condition.replace(name=condition.name.removesuffix(_label(first)).removesuffix(", "), grid_point=())
@@ -81,7 +81,7 @@ def _with_field(condition: Condition, field: str, value: Value) -> Condition:
     if field in _FIELDS:
         return condition.replace(**{field: value})
     if first in _LEARNING:
-        swarms = tuple(_with_learning(swarm, first, rest, value) for swarm in condition.swarms)
+        swarms = tuple(_set_learning(swarm, first, rest, value) for swarm in condition.swarms)
         if swarms == condition.swarms:
             _require_learner(condition.swarms, first)
         return condition.replace(swarms=swarms)
@@ -97,7 +97,7 @@ def _with_swarm_field(swarm: SwarmRule, field: str, value: Value) -> SwarmRule:
     part, _, argument = field.partition(".")
     if part in _LEARNING:
         _require_learner((swarm,), part)
-        return _with_learning(swarm, part, argument, value)
+        return _set_learning(swarm, part, argument, value)
     return swarm.replace(**{field: value})
 
 
@@ -107,7 +107,7 @@ def _require_learner(swarms: Iterable[SwarmRule], part: str) -> None:
         raise InputError(part, "", "needs a swarm of learners in every condition")
 
 
-def _with_learning(swarm: SwarmRule, part: str, argument: str, value: Any) -> SwarmRule:
+def _set_learning(swarm: SwarmRule, part: str, argument: str, value: Any) -> SwarmRule:
     """Set the reward or rule of the learners of a swarm, or one argument of it."""
     if argument:
         return swarm.replace(policy=with_learning(swarm.policy, part, **{argument: value}))

@@ -35,14 +35,14 @@ class Scenario(Checked):
     title : str
         One line.
     conditions : tuple of Condition
-        The curves; their names differ. With a grid, one for each of its points: the values join the name.
+        The curves; their names differ. With a grid, one for each point, with the values in its name.
     densities : tuple of int
         Numbers of robots.
     seeds : int
         Number of games per density.
     grid : dict of str to tuple
-        Values of fields (see `kswarms.scenarios.description.grid.expand_grid`): each condition becomes a
-        condition for each combination of values, with the combination as its `Condition.grid_values`.
+        Values of fields (see `kswarms.scenarios.description.grid.expand_grid`). Each condition is expanded to
+        a condition for each combination of values, which `Condition.grid_values` returns.
     """
 
     id: str = Field(pattern=r"^[a-z0-9][a-z0-9.-]*$", max_length=LONGEST_NAME)
@@ -61,7 +61,7 @@ class Scenario(Checked):
         return self
 
     @model_validator(mode="after")
-    def _playable(self) -> Self:
+    def _validate(self) -> Self:
         names = [condition.name for condition in self.conditions]
         if len(set(names)) < len(names):
             raise InputError("conditions", names, "must have different names")
@@ -89,14 +89,14 @@ class Scenario(Checked):
 
     def to_toml(self) -> str:
         """Return the scenario as TOML, without default values."""
-        return tomlkit.dumps(self._plain())
+        return tomlkit.dumps(self._non_defaults())
 
-    def _plain(self) -> dict[str, Any]:
-        plain = self.model_dump(mode="json", exclude_defaults=True)
-        plain["conditions"] = [each.plain() for each in collapse_grid(self.conditions, self.grid)]
-        return dict(sorted(plain.items(), key=lambda item: item[0] in ("grid", "conditions")))
+    def _non_defaults(self) -> dict[str, Any]:
+        values = self.model_dump(mode="json", exclude_defaults=True)
+        values["conditions"] = [each.non_defaults() for each in collapse_grid(self.conditions, self.grid)]
+        return dict(sorted(values.items(), key=lambda item: item[0] in ("grid", "conditions")))
 
 
 def toml_of(scenarios: Iterable[Scenario]) -> str:
-    """Return several scenarios as one TOML document: its array ``scenarios``."""
-    return tomlkit.dumps({"scenarios": [scenario._plain() for scenario in scenarios]})
+    """Return several scenarios as one TOML document with an array ``scenarios``."""
+    return tomlkit.dumps({"scenarios": [scenario._non_defaults() for scenario in scenarios]})

@@ -13,18 +13,20 @@ def read_scenarios(path: Path) -> list[Scenario]:
     Raises
     ------
     InputError
-        If the file cannot be read, or a scenario is not allowed.
+        If the file cannot be read, or a scenario is invalid.
     """
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (OSError, ValueError, RecursionError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
-        raise InputError("id", str(path), f"must be a file of TOML ({reason})") from error
+        raise InputError("id", str(path), f"must be a TOML file ({reason})") from error
     scenarios = content.get("scenarios", content)
     if not isinstance(scenarios, list):
         return [_make_scenario(path.name, content)]
     if len(content) > 1 or not scenarios:
-        raise InputError(f"{path.name}: scenarios", scenarios, "must not be empty, and the only entry")
+        raise InputError(
+            f"{path.name}: scenarios", scenarios, "must not be empty, and must be the only entry"
+        )
     return [_make_scenario(f"{path.name}: scenarios.{k}", each) for k, each in enumerate(scenarios)]
 
 

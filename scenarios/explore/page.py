@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import solara
 
-from kswarms.scenarios.catalogue.selection import FIRST_SCENARIO
+from kswarms.scenarios.catalogue.selection import DEFAULT_SCENARIO
 from kswarms.scenarios.explore.controls import Controls
 from kswarms.scenarios.explore.panels import Panels
 from kswarms.scenarios.explore.playback import SPEEDS
@@ -33,7 +33,7 @@ _STYLE: Final = """
 .kswarms-swarm { padding: 4px 0 4px 10px; margin: 4px 0; }
 """
 
-start: str | Run = FIRST_SCENARIO
+start: str | Run = DEFAULT_SCENARIO
 """Scenario or run of a new page, set by the command line."""
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from kswarms.agents.policies.editing import with_learning
 from kswarms.agents.policies.learner import Learner
-from kswarms.scenarios.catalogue.selection import USUAL_N, select_scenarios
+from kswarms.scenarios.catalogue.selection import DEFAULT_N, select_scenarios
 from kswarms.scenarios.description.condition import Condition, SwarmRule
 from kswarms.scenarios.description.text import parse_integers
 from kswarms.scenarios.explore.form import Form, with_parameter
@@ -41,7 +41,7 @@ class Session(Playback):
             self.form = Form.of_game(start.game, start.seed)
         else:
             self._open(start)
-            self.form = self._form_of_condition(USUAL_N, 0)
+            self.form = self._form_of_condition(DEFAULT_N, 0)
         game = self.form.game()
         with run_errors(f"the game of {self.source}"):
             super().__init__(Player(game, self.form.seed))

@@ -8,7 +8,7 @@ from typing import Final
 from kswarms.agents.common.errors import InputError
 
 _MIN_RUNS: Final = 32
-"""Minimum number of runs submitted at the same time, since a cluster may grow."""
+"""Minimum number of parallel runs. More workers may join the cluster later."""
 _TIMEOUT: Final = 10
 """Connection timeout (s)."""
 
@@ -25,11 +25,11 @@ def dask_executor(address: str) -> Iterator[tuple[Executor, int]]:
     except ImportError as error:
         raise InputError("scheduler", address, "needs Dask: pip install 'kswarms[cluster]'") from error
     try:
-        get_address_host_port(address)  # the client of a malformed address hangs when it is deleted
+        get_address_host_port(address)  # a client with a malformed address hangs on deletion
         client = Client(address, timeout=_TIMEOUT, set_as_default=False)
     except (OSError, ValueError) as error:
         rule = f"must be the address of a Dask scheduler ({' '.join(str(error).split())})"
         raise InputError("scheduler", address, rule) from error
     with client:
-        # Not pure: Dask would treat equal runs as one task and cache its result.
+        # With `pure`, Dask would treat equal runs as one task and cache its result.
         yield client.get_executor(pure=False), max(_MIN_RUNS, sum(client.nthreads().values()))

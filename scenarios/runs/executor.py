@@ -16,7 +16,7 @@ def play_through(
 ) -> Generator[tuple[Run, Outcome | Failure | None, float], None, None]:
     """Play runs through an executor, at most `at_once` at a time; yield run, result and CPU time (s).
 
-    The result is None if the executor broke during the run. Runs not yet submitted then stay in `waiting`.
+    If the executor breaks, the result of each unfinished submitted run is None. Other runs stay in `waiting`.
     """
     ended: SimpleQueue[Future[Any]] = SimpleQueue()
     playing: dict[Future[Any], Run] = {}

@@ -30,7 +30,7 @@ def play(run: Run, record: str = "") -> Outcome:
 
 @contextmanager
 def finished_game(run: Run, record: str = "") -> Iterator[GameModel]:
-    """Play a run as `play` does and yield its model at the end of the game; free the model afterwards."""
+    """Play a run like `play` and yield its model at the end of the game; free the model afterwards."""
     with run_errors(str(run)):
         require_unchanged(run)
         model = GameModel(run.game, seed=run.seed, record=record)
@@ -42,19 +42,19 @@ def finished_game(run: Run, record: str = "") -> Iterator[GameModel]:
 
 
 @contextmanager
-def run_errors(game: str) -> Iterator[None]:
-    """Raise every error as a `RunError` that names the game; user-defined policies may raise anything."""
+def run_errors(label: str) -> Iterator[None]:
+    """Re-raise every error as a `RunError` with a label; user-defined policies may raise anything."""
     try:
         yield
     except (Exception, SystemExit) as error:
         failure = Failure.of(error)
-        raise RunError(f"{game} failed: {failure.error}", failure.trace) from error
+        raise RunError(f"{label} failed: {failure.error}", failure.trace) from error
 
 
 def attempt(run: Run, record: str, code: str) -> tuple[Outcome | Failure, float]:
     """Play a run in a worker; return its outcome or failure, and its CPU time (s).
 
-    The run fails if the `code_version` of the worker is not `code`, as may happen on a cluster.
+    The run fails if the `code_version` of the worker differs from `code`, as may happen on a cluster.
     """
     if code != code_version():
         return Failure(f"the worker has kswarms {code_version()}, it must have {code}"), 0.0

@@ -1,4 +1,4 @@
-"""Play runs in worker processes of this machine, which are replaced regularly and when one dies."""
+"""Play runs in worker processes of this machine, replaced at intervals and when one dies."""
 
 import os
 import signal
@@ -17,21 +17,22 @@ from kswarms.scenarios.runs.outcome import Failure, Result
 from kswarms.scenarios.runs.run import Run
 
 GAMES_PER_WORKER: Final = 2500
-"""Games after which worker processes are replaced, which bounds the memory that Mesa keeps in each."""
-TRIES: Final = 3
-"""A run is failed when its worker died this many times while it was played alone."""
+"""Games per worker before it is replaced. Mesa keeps memory of each game, so workers grow."""
+MAX_DEATHS: Final = 3
+"""A run fails when it was retried alone this many times and its worker died each time."""
 
 
 def play_in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[Result, None, None]:
     """Play runs in `jobs` worker processes, and yield each result as its run ends.
 
-    A process that dies breaks the executor, and any of the runs played then may be the cause (too much
-    memory, for example). These runs are retried one at a time.
+    If a worker dies, its executor breaks. Any submitted run may be the cause, by its use of memory for
+    example. So all submitted runs are retried one at a time.
     """
-    suspects: deque[Run] = deque()
+    suspects: deque[Run] = deque()  # submitted runs of broken executors
     deaths: Counter[str] = Counter()
     while waiting or suspects:
-        if alone := bool(suspects):
+        alone = bool(suspects)  # retry one run at a time
+        if alone:
             batch, workers, at_once = suspects, 1, 1
         else:
             # `max_tasks_per_child` of the executor hangs in Python 3.11, so each batch has a new executor.
@@ -45,11 +46,12 @@ def play_in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[
                 if not started.is_set():
                     reason = 'none started: is `if __name__ == "__main__"` missing?'
                     raise InputError("jobs", jobs, f"needs worker processes, and {reason}")
-                deaths[run.digest] += alone
-                if deaths[run.digest] < TRIES:
+                if alone:
+                    deaths[run.digest] += 1
+                if deaths[run.digest] < MAX_DEATHS:
                     suspects.appendleft(run)
                 else:
-                    error = f"its worker process died {TRIES} times: killed or out of memory?"
+                    error = f"its worker process died {MAX_DEATHS} times: killed or out of memory?"
                     yield run, Failure(error), 0.0
         if not alone:
             waiting.extendleft(reversed(batch))

@@ -1,4 +1,4 @@
-"""Runs: a game with a seed, and the runs of scenarios."""
+"""A run (a game with a seed), its digest, and the runs of scenarios."""
 
 import json
 from collections.abc import Iterable
@@ -26,7 +26,7 @@ class Run:
     """One game with one seed."""
 
     digest: str
-    """Identifies what is simulated (see `digest`)."""
+    """Identifier of the simulation (see `digest`)."""
     game: Game
     seed: int
     """Seed of the game, ≥ 0."""
@@ -58,7 +58,7 @@ def cpu_seconds(n: int, learning: float, duration: float, puck_limit: int | None
 
 @cache
 def code_version() -> str:
-    """Return the version of the package and a hash of the code that decides the results."""
+    """Return the version of the package and a hash of the code that affects results."""
     root = Path(__file__).resolve().parents[2]
     content = sha256()
     for package in ("agents", "model"):
@@ -68,10 +68,10 @@ def code_version() -> str:
 
 
 def digest(game: Game, seed: int) -> str:
-    """Return an identifier of what is simulated: 16 hexadecimal digits of a SHA-256.
+    """Return an identifier of a simulation: 16 hexadecimal digits of a SHA-256.
 
     It covers the game, the files that it loads (learned policies, user code), the seed and the version of the
-    package: equal digests mean equal results. A million runs have a collision with probability 3 in 10⁸.
+    package: equal digests mean equal results. A collision among a million runs has probability 3 in 10⁸.
     """
     return digests(game, (seed,))[0]
 
@@ -83,7 +83,7 @@ def digests(game: Game, seeds: Iterable[int]) -> list[str]:
 
 
 def describe_curve(condition: Condition, n: int) -> str:
-    """Return as JSON what decides the results of a curve, except the seed and `n` (any of its densities)."""
+    """Describe a curve as JSON: its condition and the hashes of loaded files. `n` is any of its densities."""
     return _json({"condition": condition.model_dump(mode="json"), "files": _file_hashes(condition.game(n))})
 
 
@@ -113,7 +113,7 @@ def require_unchanged(run: Run) -> None:
 
 
 def expand(scenarios: Iterable[Scenario], first_seed: int = 0) -> list[Run]:
-    """Return the runs of scenarios: conditions × densities × seeds, each game and seed once.
+    """Return the runs of scenarios: conditions × densities × seeds, each pair of game and seed once.
 
     The seeds of a scenario are consecutive, from `first_seed`. A run in several curves has all their labels.
     """
@@ -124,7 +124,7 @@ def expand(scenarios: Iterable[Scenario], first_seed: int = 0) -> list[Run]:
             label = (scenario.id, condition.name)
             for n in scenario.densities:
                 game = condition.game(n)
-                for seed, name in zip(seeds, digests(game, seeds), strict=True):
-                    labels = runs[name].labels if name in runs else ()
-                    runs[name] = Run(name, game, seed, (*labels, label))
+                for seed, run_digest in zip(seeds, digests(game, seeds), strict=True):
+                    labels = runs[run_digest].labels if run_digest in runs else ()
+                    runs[run_digest] = Run(run_digest, game, seed, (*labels, label))
     return list(runs.values())

@@ -1,4 +1,4 @@
-"""Play many runs: in this process, in several processes or through an executor, with equal results."""
+"""Play many runs in this process, in worker processes or through an executor. The results are equal."""
 
 from collections import deque
 from collections.abc import Generator, Sequence
@@ -16,7 +16,7 @@ from kswarms.scenarios.runs.run import Run, code_version
 def sweep(
     runs: Sequence[Run], jobs: int = 1, record: str = "", executor: Executor | None = None
 ) -> Generator[Result, None, None]:
-    """Play runs as `play_all` does; yield each with its outcome or failure, and its CPU time (s)."""
+    """Play runs like `play_all`, but yield failures instead of raising them, and the CPU time (s)."""
     waiting = deque(sorted(runs, key=lambda run: run.effort, reverse=True))
     if executor is not None:
         no_workers = RunError("all workers exited before the sweep finished")

@@ -10,7 +10,7 @@ from kswarms.agents.common.errors import InputError
 
 LEDGER_FILE: Final = "ledger.sqlite"
 """Name of the file in the directory of a study."""
-_FORMAT: Final = 1  # raise it with every incompatible change of the tables
+_FORMAT: Final = 1  # increment it with every incompatible change of the tables
 _APPLICATION: Final = 0x6B73776D  # "kswm" identifies ledgers among SQLite files
 _TABLES: Final = f"""
 BEGIN;
@@ -37,14 +37,14 @@ COMMIT;
 """
 
 
-def open_database(path: Path, new: bool) -> sqlite3.Connection:
-    """Open the file of a ledger (if `new`, create it unless it exists) and check its format."""
-    if not new and not path.is_file():
+def open_database(path: Path, create: bool) -> sqlite3.Connection:
+    """Open the file of a ledger and check its format. With `create`, a missing file is created."""
+    if not create and not path.is_file():
         raise InputError("results", str(path.parent), f"must be a directory with a {LEDGER_FILE} of kswarms")
     with os_errors(path):
         db = sqlite3.connect(path)
         try:
-            _prepare(db, new)
+            _prepare(db, create)
         except sqlite3.Error as error:
             db.close()
             if isinstance(error, sqlite3.OperationalError):
@@ -53,14 +53,16 @@ def open_database(path: Path, new: bool) -> sqlite3.Connection:
     return db
 
 
-def _prepare(db: sqlite3.Connection, new: bool) -> None:
-    """Check the format of a file; if it is empty and `new`, create the tables."""
+def _prepare(db: sqlite3.Connection, create: bool) -> None:
+    """Check the format of a file. With `create`, an empty file gets the tables."""
     ((application,),) = db.execute("PRAGMA application_id")
     ((form,),) = db.execute("PRAGMA user_version")
     empty = not db.execute("SELECT 1 FROM sqlite_master").fetchone()
-    if not (empty and new) and (application, form) != (_APPLICATION, _FORMAT):
-        raise sqlite3.DatabaseError(f"format {form}, not {_FORMAT}" if application else "it is not")
-    if new:
+    if not (empty and create) and (application, form) != (_APPLICATION, _FORMAT):
+        raise sqlite3.DatabaseError(
+            f"format {form}, not {_FORMAT}" if application else "other file"
+        )
+    if create:
         db.execute("PRAGMA journal_mode = WAL")
         db.execute("PRAGMA synchronous = NORMAL")
     if empty:
@@ -69,7 +71,7 @@ def _prepare(db: sqlite3.Connection, new: bool) -> None:
 
 @contextmanager
 def os_errors(path: Path) -> Generator[None, None, None]:
-    """Raise errors of SQLite as `OSError`, like those of any other file."""
+    """Re-raise errors of SQLite as `OSError`, like errors of other files."""
     try:
         yield
     except sqlite3.Error as error:

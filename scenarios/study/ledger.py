@@ -1,7 +1,7 @@
 """The ledger of a study: the requested runs and their results, in an SQLite file that survives crashes.
 
-A run is a row under its digest, so it is played once, however many curves contain it. Its points in these
-curves are rows of another table. One process writes, and commits each run on its own.
+The digest of a run is its primary key. A run that several curves contain is stored and played once; its
+points in the curves are rows of another table. Only one process writes. Each result is a transaction.
 """
 
 import json
@@ -31,15 +31,15 @@ class Point(NamedTuple):
 
 
 class Ledger:
-    """An open ledger, a context manager. If `new`, its file is created unless it exists.
+    """An open ledger, a context manager. With `create`, a missing file is created.
 
     A file that is not a ledger of this format raises an `InputError`. Every method raises an `OSError` if the
     file cannot be read or written; committed data is kept.
     """
 
-    def __init__(self, path: Path, new: bool = False) -> None:
+    def __init__(self, path: Path, create: bool = False) -> None:
         self.path = path
-        self._db = open_database(path, new)  # as a context manager, it is a transaction
+        self._db = open_database(path, create)  # `with self._db` is a transaction
 
     def __enter__(self) -> Self:
         return self
@@ -107,7 +107,7 @@ class Ledger:
     def add(self, run: Run, result: Outcome | Failure, seconds: float, records: dict[str, bytes]) -> None:
         """Store the result of a planned run, its CPU time (s) and its packed records by name.
 
-        A run that is done and fails when it is replayed for a record keeps its status and results.
+        If a finished run is replayed to record a table and fails, it keeps its status and results.
         """
         with os_errors(self.path), self._db:
             if isinstance(result, Failure):
@@ -133,7 +133,7 @@ class Ledger:
             )
 
     def results(self, name: str) -> Iterator[tuple[Point, list[dict[str, Any]]]]:
-        """Yield the rows ``swarms`` or ``policies`` of each finished point, ordered by its columns."""
+        """Yield the finished points with rows ``swarms`` or ``policies``, ordered by curve, `n` and seed."""
         for *point, rows in self._query(
             f"SELECT run, scenario, condition, n, points.seed, {name} FROM points JOIN runs USING (run)"
             f" WHERE status = 'done' AND {name} != '[]' ORDER BY scenario, condition, n, points.seed"
@@ -141,7 +141,7 @@ class Ledger:
             yield Point(*point), self._parse_json(rows)
 
     def grid_points(self) -> dict[Curve, dict[str, Any]]:
-        """Return the values that a grid sets, by field, of each curve with a grid."""
+        """Return, for each curve of a grid, the values that the grid sets, by field."""
         points = {}
         for scenario, condition, text in self._query("SELECT * FROM curves ORDER BY scenario, condition"):
             if point := self._parse_json(text)["condition"].get("grid_point"):
@@ -149,33 +149,33 @@ class Ledger:
         return points
 
     def records(self, name: str) -> Iterator[tuple[str, bytes]]:
-        """Yield the digest and a packed recorded table of each finished run with this table, by digest."""
+        """Yield digest and packed table of each finished run that recorded this table, ordered by digest."""
         return self._query(
             "SELECT run, rows FROM records JOIN runs USING (run)"
             " WHERE name = ? AND status = 'done' ORDER BY run",
             name,
         )
 
-    def run(self, name: str) -> Run:
-        """Return the run with a digest; raise an `InputError` if it is missing or would differ now."""
+    def run(self, run_digest: str) -> Run:
+        """Return a run; raise an `InputError` if it is missing, or if its version or files have changed."""
         query = "SELECT version, description, seed FROM games JOIN runs ON game = id WHERE run = ?"
-        row = next(self._query(query, name), None)
+        row = next(self._query(query, run_digest), None)
         if row is None:
             rule = f"must be a run of {self.path.parent}: see the column run of its tables"
-            raise InputError("run", name, rule)
+            raise InputError("run", run_digest, rule)
         version, description, seed = row
         if version != __version__:
-            raise InputError("run", name, f"was played by kswarms {version}, this is {__version__}")
-        labels = tuple(self._query("SELECT scenario, condition FROM points WHERE run = ?", name))
-        run = Run(name, Game(**self._parse_json(description)), seed, labels)
-        if digest(run.game, run.seed) != name:
-            raise InputError("run", name, "loads a file that has changed since it was played")
+            raise InputError("run", run_digest, f"was played by kswarms {version}, this is {__version__}")
+        labels = tuple(self._query("SELECT scenario, condition FROM points WHERE run = ?", run_digest))
+        run = Run(run_digest, Game(**self._parse_json(description)), seed, labels)
+        if digest(run.game, run.seed) != run_digest:
+            raise InputError("run", run_digest, "loads a file that has changed since it was played")
         return run
 
-    def outcome(self, name: str) -> tuple[list[dict[str, Any]], list[dict[str, Any]]] | None:
+    def outcome(self, run_digest: str) -> tuple[list[dict[str, Any]], list[dict[str, Any]]] | None:
         """Return the rows ``swarms`` and ``policies`` of a run, or None if it is not done."""
         query = "SELECT swarms, policies FROM runs WHERE run = ? AND status = 'done'"
-        row = next(self._query(query, name), None)
+        row = next(self._query(query, run_digest), None)
         return (self._parse_json(row[0]), self._parse_json(row[1])) if row else None
 
     def write_session(self, number: int | None, about: dict[str, Any]) -> int | None:

@@ -19,7 +19,7 @@ _ROWS_PER_GROUP: Final = 100_000
 
 _KINDS: Final = {"text": pa.string(), "integer": pa.int64(), "real": pa.float64(), "boolean": pa.bool_()}
 _GRID_KINDS: Final[dict[str, set[type]]] = {"boolean": {bool}, "integer": {int}, "real": {int, float}}
-"""Types of the values of a grid that a kind of column accepts; text accepts all."""
+"""Python types of grid values that fit each kind of column; any value fits a column of text."""
 
 
 def arrow_schema(columns: Iterable[Column]) -> pa.Schema:
@@ -40,7 +40,7 @@ def pack(records: Mapping[str, Mapping[str, list[Any]]]) -> dict[str, bytes]:
     """Return the recorded tables of a run as Arrow streams, for the ledger."""
     packed = {}
     for name, columns in records.items():
-        table = pa.table(columns, schema=arrow_schema(TABLES[name][1:]))  # without the run
+        table = pa.table(columns, schema=arrow_schema(TABLES[name][1:]))  # without the column `run`
         sink = pa.BufferOutputStream()
         options = pa.ipc.IpcWriteOptions(compression="zstd")
         with pa.ipc.new_stream(sink, table.schema, options=options) as writer:
@@ -50,9 +50,9 @@ def pack(records: Mapping[str, Mapping[str, list[Any]]]) -> dict[str, bytes]:
 
 
 def export(ledger: Ledger, directory: Path) -> list[Path]:
-    """Write the tables of all finished runs to a directory, except those that no run has; return the files.
+    """Write the tables of all finished runs to a directory; skip tables that no run has. Return the paths.
 
-    Their bytes do not depend on the order of play. If the ledger is damaged, an `OSError` is raised.
+    The bytes do not depend on the order in which runs end. A damaged ledger raises an `OSError`.
     """
     grid_columns, grid_points = _grid(ledger)
     paths = []
@@ -73,7 +73,7 @@ def export(ledger: Ledger, directory: Path) -> list[Path]:
 
 
 def _grid(ledger: Ledger) -> tuple[list[Column], dict[Curve, dict[str, Any]]]:
-    """Return a column for each field of the grids (named ``grid.n`` if ``n`` is taken), and the values."""
+    """Return a column for each field of the grids (``grid.n`` if a column ``n`` exists), and the values."""
     taken = {*names("runs"), *names("policies")}
     points = {
         curve: {f"grid.{field}" if field in taken else field: value for field, value in point.items()}
@@ -112,7 +112,7 @@ def _result_parts(
 
 
 def _write(path: Path, schema: pa.Schema, parts: Iterator[pa.Table]) -> bool:
-    """Write a table in row groups; return whether it had a part."""
+    """Write the parts of a table in row groups; without parts, write nothing and return False."""
     first = next(parts, None)
     if first is None:
         return False

@@ -1,6 +1,7 @@
 """A study: a directory of results that keeps every run, can be resumed and has one writer at a time.
 
-The ledger is the source of truth. The tables and the manifest are written from it when a session ends.
+The ledger is the source of truth. A session is the use of a `Study` in one ``with`` block. When it ends, the
+tables and the manifest are written from the ledger.
 """
 
 import os
@@ -70,20 +71,20 @@ class Study:
             for path in self.directory.glob(f"{_TEMPORARY_TABLES}*"):
                 shutil.rmtree(path, ignore_errors=True)
             remove_temporary_files(self.directory)
-            self._ledger = stack.enter_context(Ledger(self.directory / LEDGER_FILE, new=True))
+            self._ledger = stack.enter_context(Ledger(self.directory / LEDGER_FILE, create=True))
             self._resources = stack.pop_all()
         self._about = _describe_session(self._command)
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _trace: object) -> None:
         with self._resources:
-            if self._session is None:
+            if self._session is None:  # `plan` was not called, or failed
                 return
             if isinstance(error, OSError):
                 with suppress(OSError):  # report the first error
                     self._update_session(status=f"stopped: {error}", ended=_now())
                 return
-            # If a table cannot be written, all present tables stay.
+            # If a table cannot be written, no present table is replaced.
             with TemporaryDirectory(dir=self.directory, prefix=_TEMPORARY_TABLES) as temporary:
                 written = export(self._ledger, Path(temporary))
                 self.tables = [path.replace(self.directory / path.name) for path in written]
@@ -92,14 +93,14 @@ class Study:
     def plan(
         self, scenarios: Sequence[Scenario], first_seed: int = 0, records: Sequence[str] = ()
     ) -> list[Run]:
-        """Add scenarios to the study; return those of their runs that are not finished.
+        """Add scenarios to the study; return their unfinished runs.
 
         Parameters
         ----------
         first_seed : int
             Seed of the first game at each density, ≥ 0.
         records : sequence of str
-            Names of the tables that each run must have recorded (`RECORDED_TABLES`).
+            Names of tables (`RECORDED_TABLES`). A run without one of them counts as unfinished.
 
         Raises
         ------
@@ -127,7 +128,7 @@ class Study:
 
     @property
     def other_code(self) -> list[str]:
-        """Versions of the code that played some of the runs, other than the present one."""
+        """Code versions, except the present one, that played runs of the study."""
         return [code for code in self._ledger.runs_by_code() if code != code_version()]
 
     def play(

@@ -86,7 +86,7 @@ def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
     [
         ("run", "id='': must be one or more of `kswarms list`, or none with --all"),
         ("run fig-6.1a --all", "id='fig-6.1a': must be one or more of"),
-        ("run fig-6.1a fgi-7.12", "id='fgi-7.12': must be a scenario or table of the list; did you mean fig"),
+        ("run fig-6.1a fgi-7.12", "id='fgi-7.12': must be in the catalogue; did you mean fig"),
         ("run fig-6.1a --seeds 0", "seeds=0: must be greater than or equal to 1"),
         ("run fig-6.1a --seeds 1.5", "seeds='1.5': must be a valid integer"),
         ("run fig-6.1a --record robots,", "record='': must be among conflicts, robots, trajectory"),

@@ -158,7 +158,7 @@ def test_results_do_not_depend_on_workers_and_order(monkeypatch: pytest.MonkeyPa
 def test_a_run_that_kills_its_worker_fails_after_retries_and_no_other_is_lost(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(processes, "TRIES", 2)
+    monkeypatch.setattr(processes, "MAX_DEATHS", 2)
     runs = short_runs("fig-6.1a", seeds=5)
     results = by_digest(sweep([Deadly(), *runs], 2))
     assert results.pop("dead") == Failure("its worker process died 2 times: killed or out of memory?")

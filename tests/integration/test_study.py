@@ -216,7 +216,7 @@ def test_batch_run_gives_the_numbers_of_the_command_line() -> None:
 
 def test_an_outcome_replaces_a_failure(tmp_path: Path) -> None:
     (run,) = expand([TINY.replace(densities=(4,), seeds=1, conditions=TINY.conditions[:1])])
-    with Ledger(tmp_path / LEDGER_FILE, new=True) as ledger:
+    with Ledger(tmp_path / LEDGER_FILE, create=True) as ledger:
         ledger.plan({}, {}, [run])
         assert ledger.outcome(run.digest) is None
         ledger.add(run, Failure("it broke"), 1.0, {})

@@ -79,7 +79,7 @@ def test_another_kind_of_ledger_is_refused_and_unchanged() -> None:
     with sqlite3.connect(Path("later", LEDGER_FILE)) as db:
         db.executescript("PRAGMA application_id = 1802729325; PRAGMA user_version = 2")
     db.close()
-    for name, reason in (("text", "file is not"), ("other", "it is not"), ("later", "format 2, not 1")):
+    for name, reason in (("text", "file is not"), ("other", "other file"), ("later", "format 2, not 1")):
         before = Path(name, LEDGER_FILE).read_bytes()
         with pytest.raises(InputError, match=rf"='{name}/{LEDGER_FILE}': must be a ledger of.*\({reason}"):
             Study(Path(name)).__enter__()

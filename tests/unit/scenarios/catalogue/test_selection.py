@@ -24,7 +24,7 @@ def test_scenarios_are_unique_and_in_the_order_of_the_ids(names: list[str], ids:
     [("table-6.4", "did you mean table-6.3"), ("fig-7.20", "did you mean fig-7.2"), ("q", "see `kswarms")],
 )
 def test_an_unknown_id_is_refused_with_a_hint(name: str, hint: str) -> None:
-    with pytest.raises(InputError, match=rf"^id='{name}': must be a scenario or table of the list; {hint}"):
+    with pytest.raises(InputError, match=rf"^id='{name}': must be in the catalogue; {hint}"):
         select_scenarios(["fig-6.1a", name])
 
 
@@ -44,5 +44,5 @@ def test_a_scenario_without_a_suitable_density_is_left_out_or_refused() -> None:
     assert with_densities_and_seeds(both, (6,), 1, suitable_only=True)[1] == ["fig-7.12"]
     with pytest.raises(InputError, match=r"^n=6: must be a multiple of 13 .* \(fig-7\.12\)$"):
         with_densities_and_seeds(both, (6,), 1, suitable_only=False)
-    with pytest.raises(InputError, match=r"^densities='7': must suit some scenario"):
+    with pytest.raises(InputError, match=r"^densities='7': must suit at least one scenario"):
         with_densities_and_seeds(both, (7,), 1, suitable_only=True)

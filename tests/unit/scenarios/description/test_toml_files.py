@@ -43,7 +43,7 @@ def test_fields_at_their_defaults_may_be_left_out(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("before", "after", "message"),
     [
-        ("[9]", "[9", "id='FILE': must be a file of TOML (Unclosed array"),
+        ("[9]", "[9", "id='FILE': must be a TOML file (Unclosed array"),
         ('"hunt"', '"Hunt me"', "hunt.toml: id='Hunt me': "),
         ("[9]", "[10]", "hunt.toml: n=10: must be a multiple of 3"),
         (
@@ -67,7 +67,7 @@ def test_fields_at_their_defaults_may_be_left_out(tmp_path: Path) -> None:
         ("duration = 60", 'name = "a\\nb"', "hunt.toml: conditions.0.name='a\\nb': "),
         ("seeds = 3", "seeds = true", "hunt.toml: seeds=True: must be a number"),
         ("seeds = 3", "seeds = 1000001", "hunt.toml: seeds=1000001: must be less than"),
-        (HUNT, f"id = {'[' * 3000}", "id='FILE': must be a file of TOML (maximum recursion"),
+        (HUNT, f"id = {'[' * 3000}", "id='FILE': must be a TOML file (maximum recursion"),
         (HUNT, "", "hunt.toml: id=None: is required"),
     ],
 )
@@ -84,7 +84,7 @@ def test_an_error_names_the_file_and_the_field(before: str, after: str, message:
 def test_a_file_that_is_not_text_is_refused(tmp_path: Path) -> None:
     (tmp_path / "noise.toml").write_bytes(b"\xff\xfe\x00")
     for path in (tmp_path / "noise.toml", tmp_path / "absent.toml", tmp_path):
-        with pytest.raises(InputError, match="must be a file of TOML"):
+        with pytest.raises(InputError, match="must be a TOML file"):
             read_scenarios(path)
 
 
@@ -100,5 +100,5 @@ def test_scenarios_with_the_same_id_must_be_equal(tmp_path: Path) -> None:
     first, second = select_scenarios(["fig-6.1c", str(file), "fig-6.1a"])
     assert (first, second) == (CATALOGUE["fig-6.1c"], CATALOGUE["fig-6.1a"])
     file.write_text(CATALOGUE["fig-6.1c"].replace(seeds=3).to_toml())
-    with pytest.raises(InputError, match=r"id='fig-6.1c': must name one scenario, not two that differ"):
+    with pytest.raises(InputError, match=r"id='fig-6.1c': names two different scenarios"):
         select_scenarios(["fig-6.1c", str(file)])

@@ -64,7 +64,7 @@ def write(
 ) -> list[str]:
     """Store results in the ledger of a directory and export it; return the names of the files."""
     directory.mkdir(exist_ok=True)
-    with Ledger(directory / LEDGER_FILE, new=True) as ledger:
+    with Ledger(directory / LEDGER_FILE, create=True) as ledger:
         ledger.plan({}, curves or {}, list(runs))
         for run in runs:
             added = result(run)
