@@ -4,14 +4,14 @@ from typing import Literal
 
 from pydantic import Field
 
-from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.limits import LONGEST_TIME
 
 AWAY: Literal[-1] = -1
 TOWARDS: Literal[1] = 1
 
 
-class Action(Checked):
+class Action(FrozenModel):
     """A way to resolve a conflict: turn, then drive forward.
 
     Attributes

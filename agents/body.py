@@ -4,12 +4,12 @@ from typing import Final
 
 from pydantic import Field
 
-from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.descriptions import FrozenModel
 
 SENSORS: Final = 8  # proximity sensors, one every 45°, the first ahead
 
 
-class Body(Checked):
+class Body(FrozenModel):
     """Body of a robot.
 
     Attributes

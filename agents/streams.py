@@ -1,7 +1,7 @@
 """Random streams, identified by (seed, robot, purpose).
 
 Every robot has a stream for each kind of decision. Two games with the same seed therefore draw the same
-numbers for the same decisions, and an additional robot does not change the draws of the others.
+numbers for the same decisions, and an additional robot does not change the numbers of the others.
 """
 
 from enum import IntEnum
@@ -9,11 +9,11 @@ from typing import Final
 
 from numpy.random import PCG64, Generator, SeedSequence
 
-ENVIRONMENT: Final = 2**32 - 1  # in place of a robot's number, for draws of the environment
+ENVIRONMENT: Final = 2**32 - 1  # in place of a robot's number, for streams of the environment
 
 
 class Purpose(IntEnum):
-    """Purpose of a stream. Never change a value, since results depend on it; only add values."""
+    """Purpose of a stream. Results depend on the values: add new ones, but never change one."""
 
     POSITION = 0
     HEADING = 1
@@ -39,9 +39,9 @@ class Streams:
         self.robot = robot
         self._streams: dict[Purpose, Generator] = {}
 
-    def draws(self, purpose: Purpose) -> Generator:
-        """Return the stream for a purpose, in its current state."""
-        draws = self._streams.get(purpose)
-        if draws is None:
-            draws = self._streams[purpose] = stream(self.seed, self.robot, purpose)
-        return draws
+    def generator(self, purpose: Purpose) -> Generator:
+        """Return the stream for a purpose, always the same object."""
+        generator = self._streams.get(purpose)
+        if generator is None:
+            generator = self._streams[purpose] = stream(self.seed, self.robot, purpose)
+        return generator

@@ -1,7 +1,7 @@
 """Competing swarms of foraging robots that learn whether to fight or to flee.
 
-The names below are the public interface; docs/api.md describes them and how they may change. Each is loaded
-on first use, so that ``import kswarms`` is fast.
+The names below are the public interface, documented in docs/api.md. Each is imported on first use, so that
+``import kswarms`` is fast.
 """
 
 from importlib import import_module
@@ -37,6 +37,7 @@ __version__ = "0.2.0"
 
 _MODULES: Final = {
     "agents.actions": ("AWAY", "TOWARDS", "Action"),
+    "agents.body": ("Body",),
     "agents.common.errors": ("InputError",),
     "agents.learning.bandit": ("Bandit",),
     "agents.learning.rewards": ("Reward",),
@@ -44,7 +45,6 @@ _MODULES: Final = {
     "agents.policies.interface": ("LearningPolicy", "Policy", "Setting"),
     "agents.policies.learner": ("Learner",),
     "agents.policies.spec": ("make_policy",),
-    "agents.body": ("Body",),
     "agents.streams": ("Purpose",),
     "analysis.figures.files": ("save",),
     "analysis.figures.over_n": ("figure_of",),

@@ -22,7 +22,7 @@ class Instant(Event):
         self._priority = priority
         self._callback = callback
 
-    def happen_in(self, delay: int) -> None:
+    def schedule_in(self, delay: int) -> None:
         """Schedule it `delay` periods from now; an earlier schedule must have passed."""
         self.callbacks = [self._callback]
         self.env.schedule(self, self._priority, delay)  # type: ignore[arg-type]  # SimPy names only two of them

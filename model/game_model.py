@@ -53,11 +53,11 @@ class GameModel(GameState):
         self._due = 0
         """Number of kernel events that wait for decisions of the robots."""
         if self.phase == "learning":
-            Instant(self.env, BEFORE_TIMEOUTS, self._switch_phase).happen_in(self.begin)
-        end = self.begin + self.controller.periods(game.duration)
-        Instant(self.env, BEFORE_TIMEOUTS, self._time_out).happen_in(end)
+            Instant(self.env, BEFORE_TIMEOUTS, self._switch_phase).schedule_in(self.game_begin)
+        end = self.game_begin + self.controller.periods(game.duration)
+        Instant(self.env, BEFORE_TIMEOUTS, self._time_out).schedule_in(end)
         self._motion = Instant(self.env, AFTER_TIMEOUTS, self._move)
-        self._motion.happen_in(0)
+        self._motion.schedule_in(0)
         self._sample_every = self.controller.periods(game.sample_period)
         self._sampled_end = False
         self.recorder = Recorder(self, recorded)
@@ -81,7 +81,7 @@ class GameModel(GameState):
             return
         until = self.now - self.now % self._sample_every + self._sample_every
         self.env.run(until=until)
-        self._require(bool(self.ended) or self.now == until)
+        self._check_clock(bool(self.ended) or self.now == until)
         self._sample()
 
     def play(self) -> None:
@@ -92,7 +92,7 @@ class GameModel(GameState):
             return
         if not self.ended:
             self.env.run()
-            self._require(bool(self.ended))
+            self._check_clock(bool(self.ended))
         self._stop()
 
     def results(self) -> list[dict[str, Any]]:
@@ -107,7 +107,7 @@ class GameModel(GameState):
         """Return the recorded tables (conflicts, robots, trajectory) by name; columns have equal lengths."""
         return self.recorder.tables()
 
-    def _require(self, in_order: bool) -> None:
+    def _check_clock(self, in_order: bool) -> None:
         if not in_order:  # a user-defined policy raised SimPy's StopSimulation
             raise RuntimeError(f"the clock was stopped at {self.time} s, before the end of the game")
 
@@ -155,7 +155,7 @@ class GameModel(GameState):
             tick, self._due = kernel.advance(now, env.peek())  # type: ignore[arg-type]
             if tick > now or self._due == 0:
                 break
-        self._motion.happen_in(tick - now)
+        self._motion.schedule_in(tick - now)
 
     def _decide(self, now: int, size: int) -> None:
         """Pass the first `size` events of the kernel to their robots, in the order of the robots' rows."""

@@ -32,7 +32,7 @@ class GameState(mesa.Model):
         Robots in the game, by number.
     members : list of list of Krembot
         Robots of each swarm.
-    begin : int
+    game_begin : int
         Control period in which the measured game begins; 0 without a learning phase.
     phase : {'learning', 'game'}
         The scores are reset when the measured game begins.
@@ -60,13 +60,13 @@ class GameState(mesa.Model):
         periods = self.controller.periods
         self.action_periods: Mapping[str, int] = {a.name: periods(a.duration) for a in game.action_set}
         self.conflict_log: list[Conflict] | None = [] if log_conflicts else None
-        self.begin = math.ceil(game.learning / game.parameters.period - 1e-9)
-        self.phase = "learning" if self.begin > 0 else "game"
+        self.game_begin = math.ceil(game.learning / game.parameters.period - 1e-9)
+        self.phase = "learning" if self.game_begin > 0 else "game"
         self.ended = ""
         self._end_period: int | None = None
         self.space, self.states = place_robots(game, self.arena, self.seed, self.random)
         self._set_robots(make_robots(self, game, self.seed))
-        if game.absent_from == "learning" or self.begin == 0:
+        if game.absent_from == "learning" or self.game_begin == 0:
             self._remove_absent()
         self._reset_scores()
 
@@ -84,7 +84,7 @@ class GameState(mesa.Model):
     def duration(self) -> float:
         """Seconds of the measured game so far."""
         now = self.now if self._end_period is None else self._end_period
-        return self.controller.seconds(max(0, now - self.begin))
+        return self.controller.seconds(max(0, now - self.game_begin))
 
     def times(self, swarm: int) -> tuple[list[int], int]:
         """Return T(a) of a swarm, by the swarm of the opponent, and T(p), up to now (robot-periods)."""

@@ -49,10 +49,10 @@ def start_poses(
 
 
 def _draw_place(
-    draws: Generator, limit: float, taken: list[tuple[float, float]], apart: float
+    rng: Generator, limit: float, taken: list[tuple[float, float]], apart: float
 ) -> tuple[tuple[float, float], bool]:
     """Return the first free place drawn, or the roomiest of the last batch; and whether it is free."""
-    for x, y in draws.uniform(-limit, limit, size=(_FEW, 2)).tolist():
+    for x, y in rng.uniform(-limit, limit, size=(_FEW, 2)).tolist():
         for other_x, other_y in taken:
             dx, dy = x - other_x, y - other_y
             if dx * dx + dy * dy < apart:
@@ -61,7 +61,7 @@ def _draw_place(
             return (x, y), True
     others = np.array(taken)
     for batch in _BATCHES:
-        places = draws.uniform(-limit, limit, size=(batch, 2))
+        places = rng.uniform(-limit, limit, size=(batch, 2))
         room = ((places[:, None, :] - others) ** 2).sum(axis=2).min(axis=1)
         free = np.flatnonzero(room >= apart)
         if len(free) > 0:

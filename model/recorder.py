@@ -8,9 +8,9 @@ from typing import Any, Final
 from mesa import DataCollector
 
 from kswarms.agents.actions import TOWARDS
-from kswarms.agents.common.columns import RECORDED_TABLES, names
+from kswarms.agents.common.columns import RECORDED_TABLES, column_names
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.policies.saved import best_actions, save, snapshot_of
+from kswarms.agents.policies.saved import best_actions, save_learned, snapshot_of
 from kswarms.agents.theory.swarms import swarm_utility_difference
 from kswarms.agents.theory.times import share_of_time
 from kswarms.model.game_state import GameState
@@ -20,7 +20,7 @@ RECORDS: Final = ("model", "agents", *RECORDED_TABLES)
 
 Table = dict[str, list[Any]]
 
-_CONFLICTS, _ROBOTS, _TRAJECTORY = (names(table)[1:] for table in RECORDED_TABLES)  # without the run
+_CONFLICTS, _ROBOTS, _TRAJECTORY = (column_names(table)[1:] for table in RECORDED_TABLES)  # without the run
 _OF_GAME: Final = ("swarm", "duration", "ended")
 """Columns of results that are not values of one swarm."""
 _POLICIES: Final = ("swarm", "opponent", "action", "share", "attack_share")
@@ -208,4 +208,4 @@ def save_policies(state: GameState, swarm: int, path: Path) -> None:
     learned = [snapshot_of(robot.policy) for robot in state.members[swarm - 1]]
     if not all(learned):
         raise InputError("swarm", swarm, "must be a swarm of learners")
-    save(path, swarm, learned)
+    save_learned(path, swarm, learned)

@@ -25,7 +25,7 @@ def play_learning_phase(game: Game, seed: int = 0, record: str = ALL_TABLES) -> 
     """Play the learning phase only; no robot has decided or moved in the measured game."""
     model = GameModel(game.replace(sample_period=game.learning), seed, record)
     model.step()
-    assert (model.env.now, model.phase) == (model.begin, "game")
+    assert (model.env.now, model.phase) == (model.game_begin, "game")
     return model
 
 
@@ -38,7 +38,7 @@ def conflicts_of(model: GameModel, phase: str) -> list[dict[str, Any]]:
 
 def check_times_and_pucks(model: GameModel) -> None:
     """Check that the times of the measured game add up to its duration, and pucks to those picked up."""
-    measured = model.env.now - model.begin
+    measured = model.env.now - model.game_begin
     for robot in model.robots:
         t_a, t_p = robot.times()
         assert sum(t_a) + t_p == measured

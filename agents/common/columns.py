@@ -1,12 +1,12 @@
 """Columns of every table of results: one schema for writers, readers, replay and documentation.
 
-Robots are numbered from 0, swarms from 1. ``runs`` is the table in the file ``runs.parquet``, and so on.
+Robots are numbered from 0, swarms from 1. The table ``runs`` is stored in ``runs.parquet``, and so on.
 """
 
 from typing import Final, NamedTuple
 
 SCHEMA_VERSION: Final = 1
-"""Stored in the metadata of each Parquet file, and raised when a column changes. Files of 0.1.0 have none."""
+"""Stored in the metadata of Parquet files (since 0.2.0); incremented when a column changes."""
 
 _SCHEMA: Final = """
 runs: one row for each run, swarm and curve that contains the run
@@ -19,7 +19,7 @@ swarm           | integer |               | number of the swarm
 size            | integer |               | robots of the swarm in the measured game
 policy          | text    |               | policy, with its arguments
 pucks           | integer |               | pucks deposited
-sud             | integer | pucks         | Swarm Utility Difference: own pucks less all others' (Eq. 3.7)
+sud             | integer | pucks         | Swarm Utility Difference: own pucks − all others (Eq. 3.7)
 t_a_intra       | real    | robot-seconds | T(a) of conflicts within the swarm
 t_a_inter       | real    | robot-seconds | T(a) of conflicts with other swarms
 t_p             | real    | robot-seconds | T(p)
@@ -38,7 +38,7 @@ swarm        | integer |  | number of the swarm
 opponent     | integer |  | number of the swarm learned about
 action       | text    |  | name of the action
 share        | real    |  | share of the swarm's robots for which the action is best
-attack_share | real    |  | share of them whose best action leads towards the opponent
+attack_share | real    |  | share of them whose best action drives towards the opponent
 
 conflicts: one row for each conflict that a robot began
 run            | text                    |   | digest of the game, its seed and the version
@@ -54,9 +54,9 @@ action         | text                    |   | name of the action
 t_a            | real                    | s | T(a), time in the action
 t_p            | real                    | s | T(p), time in the program until the next conflict
 active         | integer                 |   | active sensors, n′
-seen           | list of list of integer |   | robots that the sensors read, a list for each swarm
+seen           | list of list of integer |   | robots that the sensors detect, a list for each swarm
 reward         | real                    | s | reward R, NaN if nothing is learned
-q              | real                    |   | Q of the action after it (Eq. 4.15), NaN if nothing is learned
+q              | real                    |   | Q of the action after the conflict, NaN if nothing is learned
 
 robots: one row for each robot at the end of its game
 run    | text        |   | digest of the game, its seed and the version
@@ -78,10 +78,10 @@ heading | real    | rad | direction, counter-clockwise from the x-axis
 state   | text    |     | `P` (program) or `A` (action)
 puck    | boolean |     | whether the robot carries a puck
 
-contribution: one row for each game and robot, with the game without the robot
+contribution: one row for each game and robot, which compares the game with and without the robot
 scenario              | text    |               | id of the scenario
 condition             | text    |               | name of the curve, empty if the scenario has only one
-absent_from           | text    |               | phases without the robot: `game`, or `learning` and game
+absent_from           | text    |               | first phase without the robot: `learning` or `game`
 run                   | text    |               | digest of the game with the robot
 run_without           | text    |               | digest of the game without it
 policy                | text    |               | policy, with its arguments
@@ -150,13 +150,13 @@ RECORDED_TABLES: Final = ("conflicts", "robots", "trajectory")
 """Tables that a game records on request."""
 
 
-def names(table: str, *kinds: str) -> tuple[str, ...]:
-    """Return the names of a table's columns, in order: those of some kinds, or all."""
+def column_names(table: str, *kinds: str) -> tuple[str, ...]:
+    """Return the column names of a table, in order; only those of the given kinds, if any."""
     return tuple(column.name for column in TABLES[table] if not kinds or column.kind in kinds)
 
 
 def data_dictionary() -> str:
-    """Return the columns of all tables as Markdown, a heading of level 3 and a table each."""
+    """Return Markdown with a heading of level 3 and a table of columns for each table."""
     lines = []
     for name, description, columns in _TABLES:
         title = f"{name}.parquet" if name in TABLES else name

@@ -13,8 +13,8 @@ def _is_number(annotation: Any) -> bool:
     return (int in kinds or float in kinds) and bool not in kinds
 
 
-class Checked(BaseModel):
-    """Frozen data. An invalid, unknown or missing field, NaN or infinity raises an `InputError`."""
+class FrozenModel(BaseModel):
+    """Immutable pydantic model; an invalid, unknown or missing field, NaN or infinity raises `InputError`."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
@@ -27,7 +27,7 @@ class Checked(BaseModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _no_truth_for_numbers(cls, values: Any) -> Any:
+    def _refuse_booleans_as_numbers(cls, values: Any) -> Any:
         # pydantic accepts true as 1, so `seeds = true` would mean one seed.
         for name, value in values.items() if isinstance(values, dict) else ():
             field = cls.model_fields.get(name)

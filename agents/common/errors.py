@@ -46,8 +46,8 @@ class InputError(ValueError):
         """Convert the first error of a pydantic validation; `fields` are the names of the valid fields."""
         first = error.errors()[0]
         unknown = first["type"] == "extra_forbidden"
-        # For a field with several types, pydantic adds the name of the type to the path: drop what is no
-        # identifier or index, except the name of an unknown field.
+        # For a field with several types, pydantic adds type names to the path. Keep identifiers and indices,
+        # and the name of an unknown field.
         *outer, last = first["loc"] or ("",)
         parts = [part for part in outer if str(part).isidentifier() or isinstance(part, int)]
         if unknown or str(last).isidentifier() or isinstance(last, int):
@@ -58,7 +58,7 @@ class InputError(ValueError):
             outer_path = path.removesuffix(cause.field).removesuffix(".")  # a validator may name its field
             return cls(f"{outer_path}.{cause.field}".removeprefix("."), cause.value, cause.allowed)
         if unknown:
-            return cls(path, first["input"], f"no such field; there are {', '.join(fields)}")
+            return cls(path, first["input"], f"unknown field; allowed: {', '.join(fields)}")
         if first["type"] == "missing":
             return cls(path, None, "is required")
         return cls(path, first["input"], first["msg"].replace("Input should be", "must be"))

@@ -21,9 +21,9 @@ def compiled(function: _Function) -> _Function:
     Division by zero gives infinities and NaN as in numpy. Compiled functions must not allocate arrays, since
     numba's reference counting is off, which saves a tenth of a game's time.
     """
-    compile_it = njit(cache=True, error_model="numpy", _nrt=False)(function)  # type: ignore[call-overload]  # not in its stubs
-    _delete_stale_code(Path(compile_it._cache.cache_path))
-    return cast(_Function, compile_it)
+    dispatcher = njit(cache=True, error_model="numpy", _nrt=False)(function)  # type: ignore[call-overload]  # not in its stubs
+    _delete_stale_code(Path(dispatcher._cache.cache_path))
+    return cast(_Function, dispatcher)
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Largest and smallest values that input may have. Times in seconds, distances in metres."""
+"""Limits of input values. Times in seconds, distances in metres."""
 
 from typing import Final
 
@@ -7,13 +7,13 @@ LONGEST_DISTANCE: Final = 10_000.0  # side of the arena, range of a sense, gap a
 SHORTEST_PERIOD: Final = 1e-6  # control period, so that periods can be counted
 SLOWEST_TURN: Final = 1e-9  # turning rate (rad/s)
 LONGEST_STEP: Final = 0.8  # motion in a period, in radii, so that two robots do not pass through each other
-MOST_PERIODS: Final = 2**53  # number of control periods, so that float64 counts them exactly
-MOST_ROBOTS: Final = 1_000_000  # size of a swarm, and number of robots divided among swarms
-MOST_PUCKS: Final = 10**9  # puck limit and supply
-MOST_PLACES: Final = 1000  # number of stations, and of bases
-MOST_SEEDS: Final = 1_000_000  # number of seeds of a scenario
-LAST_SEED: Final = 2**53  # seed, so that every table and file stores it exactly
-MOST_POINTS: Final = 1000  # number of conditions of a scenario with a grid
+MAX_PERIODS: Final = 2**53  # number of control periods, so that float64 counts them exactly
+MAX_ROBOTS: Final = 1_000_000  # size of a swarm, and number of robots divided among swarms
+MAX_PUCKS: Final = 10**9  # puck limit and supply
+MAX_PLACES: Final = 1000  # number of stations, and of bases
+MAX_SEEDS: Final = 1_000_000  # number of seeds of a scenario
+MAX_SEED: Final = 2**53  # seed, so that every table and file stores it exactly
+MAX_POINTS: Final = 1000  # number of conditions of a scenario with a grid
 LONGEST_NAME: Final = 100  # characters of a name, which files are named after
 LONGEST_TITLE: Final = 200  # characters of a title
-MOST_JOBS: Final = 1024  # worker processes
+MAX_JOBS: Final = 1024  # worker processes

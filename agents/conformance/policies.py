@@ -122,7 +122,7 @@ def check_other_streams_are_untouched(build: Factory) -> None:
     play_conflicts(build(where), where)
     for purpose in set(Purpose) - {Purpose.EXPLORE, Purpose.POLICY}:
         untouched = stream(6, 3, purpose).random()
-        require(where.streams.draws(purpose).random() == untouched, f"it draws from {purpose.name}")
+        require(where.streams.generator(purpose).random() == untouched, f"it draws from {purpose.name}")
 
 
 def check_freezing_stops_learning(build: Factory) -> None:

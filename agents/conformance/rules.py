@@ -18,7 +18,7 @@ ARMS: Final = (1, 2, 3, 4)
 Make = Callable[..., Rule]
 
 
-def draws(seed: int = 0) -> Generator:
+def exploration_rng(seed: int = 0) -> Generator:
     """Return a robot's stream for exploration."""
     return stream(seed, 1, Purpose.EXPLORE)
 
@@ -28,7 +28,7 @@ def choose_arms(rule: Rule, arms: int, seed: int, conflicts: int = 60) -> list[i
 
     Check that the factor is in (0, 1], choices are arms, and no choice changes the bandit.
     """
-    bandit, stream_of_robot, noise = Bandit(arms), draws(seed), np.random.default_rng(99)
+    bandit, stream_of_robot, noise = Bandit(arms), exploration_rng(seed), np.random.default_rng(99)
     factor, chosen = rule.factor, []
     in_range = isinstance(factor, float | int) and 0 < factor <= 1
     require(in_range, f"factor must be a number above 0 and at most 1, not {factor!r}")

@@ -5,7 +5,7 @@ import pickle
 from collections.abc import Callable
 from typing import Any
 
-from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
 
 Make = Callable[..., Any]
@@ -42,7 +42,7 @@ def check_copies(make: Make, use: Use) -> None:
 
 def check_frozen(make: Make, use: Use) -> None:
     """Check that neither use nor an assignment changes it."""
-    one: Checked = make()
+    one: FrozenModel = make()
     before = repr(one), dict(vars(one))
     use(one)
     require((repr(one), dict(vars(one))) == before, "its use changes it")

@@ -1,6 +1,6 @@
 """Rewards of conflicts, computed from what the robot itself senses (specification, section 1.4).
 
-A reward is a frozen description with a method. A new one is a subclass of `Reward`: named in `REWARDS`, or
+A reward is an immutable object with a method. A new reward is a subclass of `Reward`: named in `REWARDS`, or
 user-defined. All robots of a policy share one reward object.
 """
 
@@ -10,7 +10,7 @@ from typing import Annotated, Final
 from pydantic import Discriminator, Field, Tag
 
 from kswarms.agents.body import SENSORS
-from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.theory.estimates import estimated_wlu, program_weight_of_equals, sigma
 from kswarms.agents.theory.times import intra_utility
 from kswarms.agents.user_code.syntax import build
@@ -20,7 +20,7 @@ def _kind(value: object) -> str:
     return "by-opponent" if isinstance(value, dict) else "for-all"
 
 
-# Discriminated unions, so that an error is about the form that was given.
+# Discriminated unions, so that an error message refers to the given form.
 _Delta = Annotated[float, Field(strict=True, ge=0, le=1)]
 _Deltas = Annotated[
     Annotated[_Delta, Tag("for-all")] | Annotated[dict[int, _Delta], Tag("by-opponent")], Discriminator(_kind)
@@ -31,7 +31,7 @@ _Ratios = Annotated[
 ]
 
 
-class Reward(Checked, ABC):
+class Reward(FrozenModel, ABC):
     """Base class of rewards."""
 
     def opponents(self) -> frozenset[int]:

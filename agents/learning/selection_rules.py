@@ -1,7 +1,7 @@
 """Selection rules: the choice of an arm while learning (specification, section 1.5).
 
-A rule is a frozen description with a method. A new one is a subclass of `Rule`: named in `RULES`, or
-user-defined. All robots of a policy share one rule object; what is learned is in their bandits.
+A rule is an immutable object with a method. A new rule is a subclass of `Rule`: named in `RULES`, or
+user-defined. All robots of a policy share one rule object; learned values are in their bandits.
 """
 
 import math
@@ -11,37 +11,37 @@ from typing import Final
 from numpy.random import Generator
 from pydantic import Field
 
-from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.learning.bandit import Bandit
 from kswarms.agents.user_code.syntax import build
 
 FORGOTTEN: Final = 1e-12  # an arm with a smaller discounted count is treated as untried
 
 
-class Rule(Checked, ABC):
+class Rule(FrozenModel, ABC):
     """Base class of selection rules: untried arms come first, in random order."""
 
     @property
     def factor(self) -> float:
-        """Discount factor of earlier conflicts at each new conflict of the bandit; 1 for no discounting."""
+        """Factor by which each new conflict of a bandit discounts its earlier ones; 1 for no discounting."""
         return 1.0
 
-    def choose(self, bandit: Bandit, draws: Generator) -> int:
-        """Return the arm to pull, from 0; `draws` is the robot's stream for exploration."""
+    def choose(self, bandit: Bandit, rng: Generator) -> int:
+        """Return the arm to pull, from 0; `rng` is the robot's stream for exploration."""
         if min(bandit.count) < FORGOTTEN:
             untried = [arm for arm, count in enumerate(bandit.count) if count < FORGOTTEN]
-            return untried[_pick(len(untried), draws)]
-        return self.prefer(bandit, draws)
+            return untried[_random_index(len(untried), rng)]
+        return self.prefer(bandit, rng)
 
     @abstractmethod
-    def prefer(self, bandit: Bandit, draws: Generator) -> int:
+    def prefer(self, bandit: Bandit, rng: Generator) -> int:
         """Return the arm to pull, from 0, once all arms have been tried.
 
         Parameters
         ----------
         bandit : Bandit
             Experience of conflicts with the opponent's swarm. A rule must not change it.
-        draws : numpy.random.Generator
+        rng : numpy.random.Generator
             The robot's stream for exploration. A rule must not use other sources of randomness.
         """
 
@@ -59,9 +59,9 @@ class UCB(Rule):
             for reward, time, count in zip(bandit.reward, bandit.time, bandit.count)  # noqa: B905  # same length
         ]
 
-    def prefer(self, bandit: Bandit, draws: Generator) -> int:
+    def prefer(self, bandit: Bandit, rng: Generator) -> int:
         """Return the arm with the greatest bound, ties broken at random."""
-        return _greatest(self.bounds(bandit), draws)
+        return _argmax(self.bounds(bandit), rng)
 
 
 class DiscountedUCB(UCB):
@@ -81,9 +81,9 @@ class DiscountedUCB(UCB):
 class Greedy(Rule):
     """The arm with the greatest Q."""
 
-    def prefer(self, bandit: Bandit, draws: Generator) -> int:
+    def prefer(self, bandit: Bandit, rng: Generator) -> int:
         """Return the arm with the greatest Q, ties broken at random."""
-        return _greatest([bandit.value(arm) for arm in range(len(bandit.count))], draws)
+        return _argmax([bandit.value(arm) for arm in range(len(bandit.count))], rng)
 
 
 class PeriodicRandom(Greedy):
@@ -91,23 +91,23 @@ class PeriodicRandom(Greedy):
 
     every: int = Field(5, ge=1)  # period of the uniformly random choices, counted for each bandit
 
-    def prefer(self, bandit: Bandit, draws: Generator) -> int:
+    def prefer(self, bandit: Bandit, rng: Generator) -> int:
         """Return a random arm if one is due, else the arm with the greatest Q."""
         if (bandit.choices + 1) % self.every == 0:
-            return _pick(len(bandit.count), draws)
-        return super().prefer(bandit, draws)
+            return _random_index(len(bandit.count), rng)
+        return super().prefer(bandit, rng)
 
 
 class UniformRandom(Rule):
     """Every arm with the same probability."""
 
-    def choose(self, bandit: Bandit, draws: Generator) -> int:
+    def choose(self, bandit: Bandit, rng: Generator) -> int:
         """Return a random arm, also while some are untried."""
-        return self.prefer(bandit, draws)
+        return self.prefer(bandit, rng)
 
-    def prefer(self, bandit: Bandit, draws: Generator) -> int:
+    def prefer(self, bandit: Bandit, rng: Generator) -> int:
         """Return a random arm."""
-        return _pick(len(bandit.count), draws)
+        return _random_index(len(bandit.count), rng)
 
 
 RULES: Final[dict[str, type[Rule]]] = {
@@ -128,14 +128,14 @@ def make_rule(rule: str | Rule) -> Rule:
     return rule if isinstance(rule, Rule) else build("rule", rule, RULES, Rule)
 
 
-def _greatest(values: list[float], draws: Generator) -> int:
-    most = max(values)
-    first = values.index(most)
-    if values.count(most) == 1:
+def _argmax(values: list[float], rng: Generator) -> int:
+    greatest = max(values)
+    first = values.index(greatest)
+    if values.count(greatest) == 1:
         return first
-    arms = [arm for arm, value in enumerate(values) if value == most]
-    return arms[_pick(len(arms), draws)]
+    arms = [arm for arm, value in enumerate(values) if value == greatest]
+    return arms[_random_index(len(arms), rng)]
 
 
-def _pick(n: int, draws: Generator) -> int:
-    return int(draws.random() * n)
+def _random_index(n: int, rng: Generator) -> int:
+    return int(rng.random() * n)

@@ -1,4 +1,4 @@
-"""Changes of the texts of policies."""
+"""Editing of policy texts."""
 
 from typing import Any
 
@@ -7,9 +7,9 @@ from kswarms.agents.user_code.syntax import Call
 
 
 def with_learning(policy: str, part: str, text: str | None = None, /, **arguments: Any) -> str:
-    """Return one or several policies with the reward or the rule (`part`) of the learners changed.
+    """Return a policy text in which the ``reward`` or ``rule`` (`part`) of all learners is changed.
 
-    `text` is the new reward or rule. By default the current one is kept, with `arguments` changed.
+    `text` is the new reward or rule. By default, only `arguments` of the current one change.
 
     Examples
     --------
@@ -18,7 +18,7 @@ def with_learning(policy: str, part: str, text: str | None = None, /, **argument
     """
     specs = [*parse_policies(policy)]
     for k, spec in enumerate(specs):
-        if (call := spec.learns_by(part)) is not None:
+        if (call := spec.learner_part(part)) is not None:
             changed = str(Call(call.name, call.arguments | arguments)) if text is None else text
             specs[k] = spec.with_arguments(**{part: changed})
     return policy if specs == [*parse_policies(policy)] else "+".join(map(str, specs))

@@ -6,7 +6,7 @@ from kswarms.agents.streams import Purpose
 
 
 class FixedPolicy:
-    """Take the action `within` within the own swarm and `against` against other swarms."""
+    """Take one action (`within`) in the own swarm, and one (`against`) against other swarms."""
 
     def __init__(self, setting: Setting, within: Action, against: Action) -> None:
         self.swarm = setting.swarm
@@ -56,7 +56,7 @@ class RandomPolicy:
         """Return the action against a robot of swarm `opponent` (from 0)."""
         if opponent == self.swarm:
             return self._within
-        return self._against[self._streams.draws(Purpose.POLICY).random() < 0.5]
+        return self._against[self._streams.generator(Purpose.POLICY).random() < 0.5]
 
     def __repr__(self) -> str:
         return f"RandomPolicy(swarm={self.swarm})"

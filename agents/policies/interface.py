@@ -54,7 +54,7 @@ class Setting(NamedTuple):
 class Policy(Protocol):
     """Chooses the action at a conflict.
 
-    A class is called with a `Setting` and the keyword arguments of the policy's text.
+    A policy class is called with a `Setting` and the keyword arguments of the policy's text.
     """
 
     def choose(self, opponent: int) -> Action:
@@ -82,7 +82,7 @@ class LearningPolicy(Policy, Protocol):
         Returns
         -------
         reward, value : float
-            Reward of the conflict (s) and Q of its action after it, for the record; NaN for none.
+            Reward of the conflict (s) and Q of its action after it; NaN if there is none. They are recorded.
         """
         ...
 

@@ -11,17 +11,16 @@ from kswarms.agents.learning.bandit import Bandit
 from kswarms.agents.learning.rewards import Reward, make_reward
 from kswarms.agents.learning.selection_rules import Rule, make_rule
 from kswarms.agents.policies.interface import Setting
-from kswarms.agents.policies.saved import flight
+from kswarms.agents.policies.saved import default_action
 from kswarms.agents.streams import Purpose
 from kswarms.agents.user_code.loading import user_errors
 
-LEARNS_BY: Final = {"reward": "wlu", "rule": "ucb"}
-"""Default reward and selection rule."""
+LEARNER_DEFAULTS: Final = {"reward": "wlu", "rule": "ucb"}
 _NOTHING: Final = (nan, nan)  # reward and value of a conflict that is not learned from
 
 
 class Learner:
-    """A policy that learns an action against each swarm, or against some with a fixed action otherwise.
+    """A policy that learns the best action against some or all swarms.
 
     Parameters
     ----------
@@ -34,7 +33,7 @@ class Learner:
     rule : str or Rule
         As in `make_rule`.
     otherwise : str
-        Name of the action against swarms that are not learned about; by default the first flight.
+        Name of the fixed action against the other swarms; by default the first flight.
 
     Attributes
     ----------
@@ -57,15 +56,15 @@ class Learner:
         self,
         setting: Setting,
         about: Literal["inter", "intra", "both"] = "both",
-        reward: str | Reward = LEARNS_BY["reward"],
-        rule: str | Rule = LEARNS_BY["rule"],
+        reward: str | Reward = LEARNER_DEFAULTS["reward"],
+        rule: str | Rule = LEARNER_DEFAULTS["rule"],
         otherwise: str = "",
     ) -> None:
         if about not in ("inter", "intra", "both"):
             raise InputError("about", about, "must be inter, intra or both")
         self.swarm = setting.swarm
         self.actions = setting.actions
-        self._flight = self._otherwise = flight(setting.actions)
+        self._flight = self._otherwise = default_action(setting.actions)
         if otherwise != "":
             by_name = {action.name: action for action in self.actions}
             if not isinstance(otherwise, str) or otherwise not in by_name:
@@ -88,8 +87,8 @@ class Learner:
             if opponent - 1 not in self.bandits:
                 raise InputError("reward", reward, f"names swarm {opponent}, which is not learned about")
         self.learning = True
-        self._draws = setting.streams.draws
-        self._explore: Generator | None = None  # stream for exploration, created on first use
+        self._generator = setting.streams.generator
+        self._rng: Generator | None = None  # stream for exploration, created on first use
         self._opponent = -1
         self._arm = -1
 
@@ -101,10 +100,10 @@ class Learner:
             return self._otherwise
         if not self.learning:
             return self.learned_action(opponent)
-        draws = self._explore
-        if draws is None:
-            draws = self._explore = self._draws(Purpose.EXPLORE)
-        self._arm = self.rule.choose(bandit, draws)
+        rng = self._rng
+        if rng is None:
+            rng = self._rng = self._generator(Purpose.EXPLORE)
+        self._arm = self.rule.choose(bandit, rng)
         if not 0 <= self._arm < len(self.actions):
             raise InputError("rule", self._arm, f"must choose 0 to {len(self.actions) - 1}")
         bandit.choices += 1

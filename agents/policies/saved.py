@@ -10,12 +10,12 @@ from pydantic import Field, model_validator
 
 from kswarms.agents.actions import AWAY, Action
 from kswarms.agents.common.atomic_files import atomic_path
-from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.interface import Policy, Setting
 
 
-class _SavedArm(Checked):
+class _SavedArm(FrozenModel):
     opponent: int
     action: str
     reward: float
@@ -30,7 +30,7 @@ class _SavedArm(Checked):
         return self
 
 
-class SavedPolicies(Checked):
+class SavedPolicies(FrozenModel):
     """Learned policies of the robots of a swarm, as stored in a file."""
 
     format: Literal["kswarms-policies-1"] = "kswarms-policies-1"
@@ -41,15 +41,14 @@ class SavedPolicies(Checked):
 class LearnedPolicy:
     """Actions learned in another game: argmax Q for each opponent swarm, flight without data.
 
-    Robot k of the swarm takes policy k of the file, modulo the number of policies, so the swarm may differ in
-    size from the one that learned. `file` is the path of a file written by `save`; its actions and swarms
-    must be those of the game.
+    `file` is the path of a file written by `save_learned`. It must have the actions and swarms of the game.
+    Robot k takes policy k of the file, modulo their number, so the size of the swarm may differ.
     """
 
     def __init__(self, setting: Setting, file: str = "") -> None:
         if not isinstance(file, str) or not file:
             raise InputError("file", file, "must be the path of a file of learned policies")
-        saved = load(Path(file))
+        saved = load_learned(Path(file))
         if saved.swarm != setting.swarm + 1:
             rule = f"must hold policies of swarm {setting.swarm + 1}, not {saved.swarm}"
             raise InputError("file", file, rule)
@@ -60,7 +59,7 @@ class LearnedPolicy:
             if not 1 <= arm.opponent <= setting.swarms:
                 raise InputError("file", file, f"has swarm {arm.opponent}, the game has {setting.swarms}")
         self.swarm = setting.swarm
-        self._flight = flight(setting.actions)
+        self._flight = default_action(setting.actions)
         arms = saved.robots[setting.place % len(saved.robots)]
         self._actions = best_actions([dict(arm) for arm in arms], setting.actions)
 
@@ -73,13 +72,13 @@ class LearnedPolicy:
         return f"LearnedPolicy(swarm={self.swarm}, actions={known})"
 
 
-def flight(actions: Sequence[Action]) -> Action:
-    """Return the default action: the first that drives away, else the first of all."""
+def default_action(actions: Sequence[Action]) -> Action:
+    """Return the first flight, or the first action if there is no flight."""
     return next((action for action in actions if action.direction == AWAY), actions[0])
 
 
 def best_actions(arms: Sequence[Mapping[str, Any]], actions: Sequence[Action]) -> dict[int, Action]:
-    """Return argmax Q for each opponent swarm (from 0); flight if none of its arms was tried."""
+    """Return argmax Q for each opponent swarm (from 0); the default action if no arm was tried."""
     by_name = {action.name: action for action in actions}
     best: dict[int, Mapping[str, Any] | None] = {}
     for arm in arms:
@@ -87,9 +86,8 @@ def best_actions(arms: Sequence[Mapping[str, Any]], actions: Sequence[Action]) -
         known = best.setdefault(opponent, None)
         if arm["count"] > 0 and (known is None or arm["q"] > known["q"]):
             best[opponent] = arm
-    return {
-        opponent: flight(actions) if arm is None else by_name[arm["action"]] for opponent, arm in best.items()
-    }
+    default = default_action(actions)
+    return {swarm: default if arm is None else by_name[arm["action"]] for swarm, arm in best.items()}
 
 
 def snapshot_of(policy: Policy) -> list[dict[str, Any]]:
@@ -98,8 +96,8 @@ def snapshot_of(policy: Policy) -> list[dict[str, Any]]:
     return snapshot()
 
 
-def save(path: Path, swarm: int, robots: Sequence[Sequence[Mapping[str, Any]]]) -> None:
-    """Write the learned policies of a swarm (from 1) atomically: the arms of each robot's snapshot."""
+def save_learned(path: Path, swarm: int, robots: Sequence[Sequence[Mapping[str, Any]]]) -> None:
+    """Write the learned policies of swarm `swarm` (from 1) atomically; `robots` has a snapshot per robot."""
     saved = SavedPolicies(swarm=swarm, robots=[list(map(_without_nan, arms)) for arms in robots])
     text = json.dumps(saved.model_dump(), indent=1)
     with atomic_path(path) as file:
@@ -117,8 +115,8 @@ def check_arms(arms: Sequence[Mapping[str, Any]]) -> None:
         _SavedArm(**_without_nan(arm))
 
 
-def load(path: Path) -> SavedPolicies:
-    """Read a file written by `save`; raise an `InputError` if it is missing, damaged or of another format."""
+def load_learned(path: Path) -> SavedPolicies:
+    """Read a file written by `save_learned`; raise an `InputError` if it is missing or invalid."""
     try:
         return _load(path, path.stat().st_mtime_ns)
     except (OSError, ValueError, TypeError, RecursionError) as error:
@@ -126,5 +124,6 @@ def load(path: Path) -> SavedPolicies:
 
 
 @lru_cache(maxsize=16)
-def _load(path: Path, _changed: int) -> SavedPolicies:
+def _load(path: Path, _modified: int) -> SavedPolicies:
+    # The cache is keyed by the modification time too, so that a changed file is read again.
     return SavedPolicies(**json.loads(path.read_text(encoding="utf-8")))

@@ -1,8 +1,9 @@
-"""Policies as they are written: parsed once, then built for each robot.
+"""Parsing of policies, and building them for each robot.
 
-A policy is a text, a class or a factory. A text is one of `POLICIES` or a user-defined class as
-``path/to/my_file.py:MyPolicy``, both with arguments where needed, or the name of an action that is always
-taken. Several policies, joined by ``+`` or in a list, are dealt out to the robots of a swarm.
+A policy is a text, a class or a factory. A text is the name of a policy in `POLICIES`, a reference to a
+user-defined class (``path/to/my_file.py:MyPolicy``), or the name of an action, which is then always taken.
+Names and references may have arguments. Several policies, joined by ``+`` or in a list, are dealt out to the
+robots of a swarm.
 """
 
 import copy
@@ -18,29 +19,29 @@ from kswarms.agents.learning.rewards import make_reward
 from kswarms.agents.learning.selection_rules import make_rule
 from kswarms.agents.policies.fixed import FixedPolicy
 from kswarms.agents.policies.interface import Policy, Setting
-from kswarms.agents.policies.learner import LEARNS_BY
+from kswarms.agents.policies.learner import LEARNER_DEFAULTS
 from kswarms.agents.policies.registry import ALIASES, POLICIES
 from kswarms.agents.policies.user_policy import check_factory, parameters_of
 from kswarms.agents.user_code.loading import is_reference, load_class, reference_to, sources, user_errors
 from kswarms.agents.user_code.syntax import Call, is_literal, parse_call, split_outside
 
 Factory = Callable[[Setting], Policy]
-"""A policy's class, or a callable that returns a policy: ``functools.partial(MyPolicy, patience=2)``."""
+"""A policy class, or a callable that returns a policy: ``functools.partial(MyPolicy, patience=2)``."""
 PolicyLike = str | Factory | Sequence[str | Factory]
 """One policy, or several that are dealt out to the robots of a swarm."""
 
 
 @dataclass(frozen=True)
 class PolicySpec:
-    """One policy with its arguments. Printing it gives its text."""
+    """One policy with its arguments; ``str(spec)`` is its text."""
 
     label: str  # text of the policy, or the name of a factory without a text
-    given: Factory | None = None  # the class or factory, if the policy was given as one
+    given: Factory | None = None  # the class or factory, unless the policy was given as a text
     call: Call | None = field(default=None, compare=False)  # None if other processes cannot import it
 
     @classmethod
     def of_factory(cls, factory: Factory) -> Self:
-        """Return the spec of a class or factory; its text is ``module:Class(…)`` where it has one."""
+        """Return the spec of a class or factory, with the text ``module:Class(…)`` if it is importable."""
         kind, arguments = factory, {}
         if isinstance(factory, partial) and not factory.args:
             kind, arguments = factory.func, factory.keywords
@@ -98,34 +99,34 @@ class PolicySpec:
             make = POLICIES[name]
         check_factory(name, make, arguments)
         with InputError.within("policy"):
-            if self.learns_by("reward"):  # all robots share one reward and one rule
-                arguments["reward"] = make_reward(arguments.get("reward", LEARNS_BY["reward"]))
-                arguments["rule"] = make_rule(arguments.get("rule", LEARNS_BY["rule"]))
+            if self.learner_part("reward"):  # all robots share one reward and one rule
+                arguments["reward"] = make_reward(arguments.get("reward", LEARNER_DEFAULTS["reward"]))
+                arguments["rule"] = make_rule(arguments.get("rule", LEARNER_DEFAULTS["rule"]))
         return partial(_build, name if self.is_user_defined else "", make, arguments)
 
     def build(self, setting: Setting) -> Policy:
         """Build the policy of one robot."""
         return self.factory(setting.actions)(setting)
 
-    __call__ = build
+    __call__ = build  # a spec is a factory, too
 
     def files(self) -> list[Path]:
-        """Return the files of user-defined code, also of reward and rule, and of learned policies."""
+        """Return the files that the policy depends on: user-defined code and learned policies."""
         name, arguments = self._require_call()
-        parts = {part: arguments.get(part) for part in LEARNS_BY}
+        parts = {part: arguments.get(part) for part in LEARNER_DEFAULTS}
         named = {"policy": name}
         named |= {part: parse_call(part, text).name for part, text in parts.items() if isinstance(text, str)}
         found = [file for part, name in named.items() if is_reference(name) for file in sources(part, name)]
         file = arguments.get("file")
         return [*found, Path(file)] if isinstance(file, str) and Path(file).is_file() else found
 
-    def learns_by(self, part: str) -> Call | None:
-        """Return the ``reward`` or ``rule`` of a named learner; None for other policies."""
+    def learner_part(self, part: str) -> Call | None:
+        """Return the ``reward`` or ``rule`` (`part`) of a learner; None for other policies."""
         if self.given or self.name not in POLICIES:
             return None
         if part not in (parameter.name for parameter in parameters_of(POLICIES[self.name])):
             return None
-        return parse_call(part, self.arguments.get(part, LEARNS_BY[part]))
+        return parse_call(part, self.arguments.get(part, LEARNER_DEFAULTS[part]))
 
     def with_arguments(self, **changes: Any) -> "PolicySpec":
         """Return the same policy with some arguments changed."""
@@ -212,7 +213,7 @@ def make_policy(policy: str | Factory, setting: Setting) -> Policy:
 def _build(
     reference: str, make: Callable[..., Policy], arguments: Mapping[str, Any], setting: Setting
 ) -> Policy:
-    """Build a policy. A user-defined one, named by `reference`, has its own copies of the arguments."""
+    """Build a policy. A user-defined policy has a `reference` and gets its own copies of the arguments."""
     if not reference:
         with InputError.within("policy"):
             return make(setting, **arguments)

@@ -1,4 +1,4 @@
-"""Validation of policies' classes and factories."""
+"""Validation of policy classes and factories."""
 
 import inspect
 from collections.abc import Callable, Mapping
@@ -10,7 +10,7 @@ from kswarms.agents.user_code.syntax import require_known
 
 
 def check_factory(reference: str, make: Callable[..., Any], arguments: Mapping[str, Any]) -> None:
-    """Raise an `InputError` if a factory lacks a method of policies, or does not take the arguments."""
+    """Raise an `InputError` if a policy class lacks a method, or the factory does not take the arguments."""
     if inspect.isclass(make):
         missing = [] if callable(getattr(make, "choose", None)) else ["choose"]
         if callable(getattr(make, "learn", None)) and not callable(getattr(make, "freeze", None)):

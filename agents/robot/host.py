@@ -1,4 +1,4 @@
-"""Interface of the model that a robot needs; `GameModel` implements it."""
+"""Interface of the model as robots use it; `GameModel` implements it."""
 
 from collections.abc import Mapping
 from typing import Protocol
@@ -12,7 +12,7 @@ from kswarms.agents.robot.state import RobotStates
 
 
 class Host(Protocol):
-    """The model of a robot."""
+    """The model that a robot belongs to."""
 
     env: simpy.Environment
     space: ContinuousSpace

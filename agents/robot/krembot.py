@@ -1,8 +1,8 @@
 """The robot: a Mesa agent in continuous space, driven by SimPy events (section 2.3).
 
-Every leg, turn, flight and fight is one SimPy timeout. At its end a decision is due. It is made at the next
-percepts, where all robots perceive the same instant. `_timer` is the current timeout; the callback of an
-interrupted one does nothing.
+Every leg, turn, flight and fight is one SimPy timeout. At its end, the phase of the robot tells the kernel
+that a decision is due; the robot decides after the next percepts. `_timer` is the current timeout. The
+callback of an interrupted timeout does nothing.
 """
 
 import math
@@ -23,6 +23,7 @@ from kswarms.agents.robot.time_account import TimedAgent
 from kswarms.agents.streams import Purpose, Streams
 
 _STRAIGHT: Final = 1e-9  # smaller turns are skipped (rad)
+_ROUNDING: Final = 1e-9  # rounding error of a number of periods
 
 
 class Krembot(TimedAgent):
@@ -34,7 +35,7 @@ class Krembot(TimedAgent):
     """
 
     __slots__ = (
-        "_action", "_action_periods", "_allowed", "_controller", "_draws", "_opponent", "_states",
+        "_action", "_action_periods", "_allowed", "_controller", "_generator", "_opponent", "_states",
         "_stride", "_stride_action", "_stride_program", "_timer", "_turn_rate", "_turn_step", "number",
         "policy_name", "pucks", "swarm",
     )
@@ -57,7 +58,7 @@ class Krembot(TimedAgent):
         self.swarm = swarm
         self.policy_name = policy_name
         self.pucks = 0  # number of deposited pucks
-        self._draws = streams.draws
+        self._generator = streams.generator
         self._allowed = actions
         self._states = model.states
         self._opponent = model.states.opponent
@@ -100,25 +101,25 @@ class Krembot(TimedAgent):
         """Wander straight ahead for an exponential duration."""
         controller = self._controller
         self._drive(LEG, self._stride_program)
-        duration = self._draws(Purpose.LEG).exponential(controller.leg_mean)
+        duration = self._generator(Purpose.LEG).exponential(controller.leg_mean)
         timer = self._timer = Timeout(self._env, controller.periods(duration), "leg")
         timer.callbacks.append(self._leg_over)
 
     def begin_wander_turn(self) -> None:
         """Turn in place by a uniform angle."""
         limit = self._controller.wander_turn
-        self._turn(TURN, self._draws(Purpose.WANDER).uniform(-limit, limit), self._turn_over)
+        self._turn(TURN, self._generator(Purpose.WANDER).uniform(-limit, limit), self._turn_over)
 
     def begin_wall_turn(self) -> None:
         """Turn in place to a heading drawn uniformly from those without a wall ahead."""
         controller = self._controller
         x, y = self._states.positions[self.index].tolist()
         heading = self.heading
-        draws = self._draws(Purpose.WALL)
+        rng = self._generator(Purpose.WALL)
         arena = controller.half, controller.wall_reach, controller.wall_half_angle
         met = walls_met(x, y, heading, *arena)
         while True:
-            target = draws.uniform(-math.pi, math.pi)
+            target = rng.uniform(-math.pi, math.pi)
             if not (heads_for(target, met) if controller.escape_away else walls_met(x, y, target, *arena)):
                 break
         self._turn(TURN, wrap(target - heading), self._turn_over)
@@ -184,7 +185,7 @@ class Krembot(TimedAgent):
         angles = ANGLES_OF[vacant]
         if len(angles) == 1:
             return angles[0]
-        return angles[int(self._draws(Purpose.VACANT).random() * len(angles))]
+        return angles[int(self._generator(Purpose.VACANT).random() * len(angles))]
 
     def _drive_action(self, event: Timeout | None) -> None:
         if event is self._timer and self._action is not None:
@@ -218,12 +219,12 @@ class Krembot(TimedAgent):
         self._stride[index] = stride
         self._turn_rate[index] = 0.0
 
-    def _turn(self, phase: int, angle: float, then: Callable[[Any], None]) -> None:
-        """Turn in place in whole periods, then call `then`."""
+    def _turn(self, phase: int, angle: float, callback: Callable[[Any], None]) -> None:
+        """Turn in place in whole periods, then call `callback`."""
         index = self.index
-        periods = math.ceil(abs(angle) / self._turn_step - _STRAIGHT) or 1
+        periods = math.ceil(abs(angle) / self._turn_step - _ROUNDING) or 1
         self._phase[index] = phase
         self._stride[index] = 0.0
         self._turn_rate[index] = angle / periods
         timer = self._timer = Timeout(self._env, periods, "turn")
-        timer.callbacks.append(then)
+        timer.callbacks.append(callback)

@@ -94,8 +94,8 @@ def sense(
 ) -> None:
     """Compute the free distance of each of the eight sensors of a robot.
 
-    This is the smaller of the distances to the wall along the middle of the sensor and to the nearest robot
-    whose centre is in its sector, both from the own surface.
+    This is the distance from the robot's surface to the nearest obstacle: the wall along the middle of the
+    sensor, or a robot whose centre is in its sector.
 
     Parameters
     ----------

@@ -51,7 +51,7 @@ class NormalForm:
         for name in ("rows", "columns"):
             actions = getattr(self, name)
             if len(set(actions)) < len(actions) or not actions:
-                raise InputError(name, actions, "must be actions of different names")
+                raise InputError(name, actions, "must be distinct action names")
         for name in ("own", "met"):
             payoffs = np.array(getattr(self, name), dtype=float)
             if payoffs.shape != (len(self.rows), len(self.columns)) or not np.isfinite(payoffs).all():
@@ -78,9 +78,10 @@ def zero_sum(rows: Sequence[str], columns: Sequence[str], own: Floats) -> Normal
 
 
 def exact_potential(payoffs: Sequence[Floats]) -> Floats | None:
-    """Return the exact potential of a game that is 0 at the first actions of all; None if it has none.
+    """Return the exact potential of a game, or None if the game has none.
 
-    When one player alone changes its action, the potential changes by the same amount as its payoff.
+    When one player alone changes its action, the potential changes by the same amount as its payoff. The
+    potential is 0 where every player takes its first action.
 
     Parameters
     ----------
@@ -182,7 +183,7 @@ def _actions(tree: nx.DiGraph, node: tuple[object, ...]) -> tuple[str, ...]:
 
 
 def polymatrix(forms: Mapping[tuple[int, int], NormalForm]) -> nx.Graph:
-    """Return the game of K swarms as the graph of the games between each two (section 1.1).
+    """Return a game of K swarms as a graph of two-player games (section 1.1).
 
     Parameters
     ----------
@@ -208,7 +209,7 @@ def polymatrix(forms: Mapping[tuple[int, int], NormalForm]) -> nx.Graph:
     for (k, m), form in sorted(forms.items()):
         for swarm, actions in ((k, form.rows), (m, form.columns)):
             if graph.nodes.get(swarm, {}).get("actions", actions) != actions:
-                raise InputError("forms", (k, m), f"must have swarm {swarm}'s actions of its other games")
+                raise InputError("forms", (k, m), f"must give swarm {swarm} the same actions in all games")
             graph.add_node(swarm, actions=actions)
         graph.add_edge(k, m, form=form)
     return graph
@@ -222,8 +223,8 @@ def is_pairwise_zero_sum(graph: nx.Graph) -> bool:
 def swarm_payoffs(graph: nx.Graph) -> Floats:
     """Return U_Sk of every swarm of a polymatrix game in which each swarm acts as one player.
 
-    The result has shape (K, A_1, …, A_K): swarm, then the action of each swarm. Within a swarm, the payoffs
-    of both players count.
+    The result has shape (K, A_1, …, A_K): swarm, then the action of each swarm. A game within a swarm adds
+    the payoffs of both players.
     """
     swarms = sorted(graph.nodes)
     shape = [len(graph.nodes[swarm]["actions"]) for swarm in swarms]

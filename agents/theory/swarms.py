@@ -37,7 +37,7 @@ def utility_between(u: ArrayLike, swarm_of: Sequence[int]) -> Floats:
 
 
 def is_zero_sum_between(u: ArrayLike, swarm_of: Sequence[int]) -> bool:
-    """Return whether the utilities of each two swarms from each other sum to zero (Eq. 3.2).
+    """Return whether, for each pair of swarms, the utilities from their interactions sum to zero (Eq. 3.2).
 
     Parameters are those of `utility_between`.
     """
@@ -92,8 +92,8 @@ def sum_of_differences(utilities: Sequence[_Utility]) -> _Utility:
 def is_zero_sum_difference(utilities: ArrayLike) -> bool:
     """Return whether the differences SUD_k sum to zero in every outcome (Thm 5, Cor. 6).
 
-    This is always so with two swarms (Cor. 6). With another number of swarms it is so only if the utilities
-    sum to zero (Thm 5).
+    With two swarms they always do (Cor. 6). With another number of swarms, they do only if the utilities sum
+    to zero (Thm 5).
 
     Parameters
     ----------

@@ -71,12 +71,12 @@ def mixed_utility(own: Interaction, n_k: int, *opponents: Sequence[Interaction])
     return intra_utility(n_k, *own) + sum(inter_utility(own, swarm) for swarm in opponents)
 
 
-def absent_to_one(other: Interaction) -> float:
+def absence_utility_of_one(other: Interaction) -> float:
     """Return ε̃_j = β_j (T(p_j) + T(a_j)): without robot i, all of j's time is program time (Eq. 4.9)."""
     return other.beta * (other.t_p + other.t_a)
 
 
-def absent_to_swarm(others: Sequence[Interaction]) -> float:
+def absence_utility_of_swarm(others: Sequence[Interaction]) -> float:
     """Return ε̃_S = n mean[βT(p)] + n mean[βT(a)] over the robots that robot i met (Eqs. 4.10, 4.11).
 
     `others` are those of its own swarm in Eq. 4.10 and the opponents in Eq. 4.11.
@@ -85,7 +85,7 @@ def absent_to_swarm(others: Sequence[Interaction]) -> float:
     return n * _mean([j.beta * j.t_p for j in others]) + n * _mean([j.beta * j.t_a for j in others])
 
 
-def present_to_own_swarm(mates: Sequence[Interaction]) -> float:
+def presence_utility_of_own_swarm(mates: Sequence[Interaction]) -> float:
     """Return ε_k = n_k (mean[βT(p)] − mean[αT(a)]), the own swarm's utility from robot i (Eqs. 4.12, 4.13).
 
     `mates` are the robots of its own swarm that it met.
@@ -115,7 +115,7 @@ def approximate_wlu(
 
 
 class Crowd(NamedTuple):
-    """Numbers of robots that robot i met, of its own swarm k and of others m; weights, for k and m means."""
+    """Numbers of robots of its own swarm k and of other swarms m that robot i met, and (mean) weights."""
 
     n_k: int
     n_m: int

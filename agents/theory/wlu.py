@@ -1,8 +1,8 @@
 """Wonderful Life Utility: the contribution of a player to its swarm (specification, section 1.2).
 
-Player ρ belongs to swarm k and meets swarm m. ε is the utility of others from ρ, ε̃ the utility that they have
-in its absence instead. Several opposing swarms count as one: their utilities from each other cancel in the
-difference by Eq. 3.1, so sums over them take the place of m.
+Player ρ belongs to swarm k and meets swarm m. ε is the utility of others from ρ, ε̃ their utility in its place
+if ρ is absent. Several opposing swarms count as one swarm m, since their utilities from each other cancel in
+the SUD (Eq. 3.1).
 """
 
 from kswarms.agents.theory.swarms import opponents_utility
@@ -37,7 +37,7 @@ def sud_without(own_intra: float, others_intra: float, own_inter: float, phi: fl
     Parameters
     ----------
     own_intra, others_intra, own_inter : float
-        Σ u_i^k, Σ u_j^m and Σ u_i^m in the game with ρ, the own sums without ρ.
+        Σ u_i^k, Σ u_j^m and Σ u_i^m in the game with ρ; the sums over i exclude ρ.
     phi, absent : float
         φ_k^ρ and ε̃_m^ρ.
     """

@@ -18,12 +18,12 @@ from typing import Any, Final
 
 from kswarms.agents.common.errors import InputError
 
-_NO_USER_CODE: Final = (f"{Path(__file__).parents[2]}/", sys.prefix, sys.base_prefix, "<frozen")
-"""Beginnings of paths whose lines are not shown as the place of an error in user code."""
+_LIBRARY_PREFIXES: Final = (f"{Path(__file__).parents[2]}/", sys.prefix, sys.base_prefix, "<frozen")
+"""Path prefixes of code that is not the user's; error messages name the last line outside them."""
 
 
 def is_reference(name: str) -> bool:
-    """Return whether a name refers to a user-defined class; names of the package have no colon."""
+    """Return whether a name refers to a user-defined class; built-in names have no colon."""
     return ":" in name
 
 
@@ -78,7 +78,7 @@ def sources(field: str, reference: str) -> list[Path]:
 
 @contextlib.contextmanager
 def user_errors(field: str, reference: str, what: str) -> Iterator[None]:
-    """Re-raise errors of user code as `InputError` with file and line; `what` is the message's subject."""
+    """Re-raise errors of user code as `InputError` with file and line; `what` names the failing step."""
     try:
         yield
     except InputError:
@@ -87,7 +87,7 @@ def user_errors(field: str, reference: str, what: str) -> Iterator[None]:
         cause = " ".join(f"{type(error).__name__}: {error}".rstrip(": ").split())
         if not isinstance(error, SyntaxError):  # its message has the line
             frames = traceback.extract_tb(error.__traceback__)
-            user_frames = [frame for frame in frames if not frame.filename.startswith(_NO_USER_CODE)]
+            user_frames = [frame for frame in frames if not frame.filename.startswith(_LIBRARY_PREFIXES)]
             place = (user_frames or frames)[-1]
             if not place.filename.startswith("<"):
                 cause += f" ({Path(place.filename).name}, line {place.lineno})"

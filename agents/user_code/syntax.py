@@ -1,18 +1,18 @@
-"""Names with arguments in texts: ``ucb``, ``wlu(delta=0.145)``, ``learner(rule="greedy")``."""
+"""Parsing of names with arguments: ``ucb``, ``wlu(delta=0.145)``, ``learner(rule="greedy")``."""
 
 import ast
 from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple, TypeVar
 
-from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.user_code.loading import is_reference, load_class, user_errors
 
-_Thing = TypeVar("_Thing", bound=Checked)
+_Thing = TypeVar("_Thing", bound=FrozenModel)
 
 
 class Call(NamedTuple):
-    """A name with keyword arguments; printing it gives the text."""
+    """A name with keyword arguments; ``str(call)`` is its text."""
 
     name: str
     arguments: dict[str, Any]
@@ -48,7 +48,7 @@ def parse_call(field: str, text: str) -> Call:
 
 
 def is_literal(value: Any) -> bool:
-    """Return whether a value can be written in a text and parsed from it."""
+    """Return whether a value equals the literal that its ``repr`` denotes."""
     try:
         return bool(ast.literal_eval(repr(value)) == value)
     except (SyntaxError, ValueError, TypeError, RecursionError, MemoryError):
@@ -75,7 +75,7 @@ def require_known(field: str, arguments: Mapping[str, Any], allowed: Collection[
     for name, value in arguments.items():
         if name not in allowed:
             names = ", ".join(allowed) or "none"
-            raise InputError(f"{field}.{name}", value, f"no such field; there are {names}")
+            raise InputError(f"{field}.{name}", value, f"unknown field; allowed: {names}")
 
 
 def split_outside(text: str, separator: str) -> list[str]:

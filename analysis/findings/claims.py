@@ -4,12 +4,12 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.findings.quantity import LEARNED, Quantity
 
 
-class _OverDensities(Checked):
+class _OverDensities(FrozenModel):
     """A claim about some numbers of robots.
 
     Attributes

@@ -6,13 +6,13 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.findings.claims import Claim
 from kswarms.analysis.statistics.intervals import CONFIDENCE
 
 
-class Finding(Checked):
+class Finding(FrozenModel):
     """A statement about outcomes, and the claim by which results decide it.
 
     Attributes
@@ -39,7 +39,7 @@ class Finding(Checked):
         return tuple(dict.fromkeys(quantity.scenario for quantity in self.claim.quantities))
 
 
-class _File(Checked):
+class _File(FrozenModel):
     findings: tuple[Finding, ...] = Field(min_length=1)
 
     @model_validator(mode="after")

@@ -4,7 +4,7 @@ from typing import Final, Self
 
 from pydantic import Field, model_validator
 
-from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
 
 UNITS: Final = {
@@ -25,7 +25,7 @@ LEARNED: Final = ("learned_attack", "learned_flight_within")
 """Measures from `policies.parquet`; the others are from `runs.parquet`."""
 
 
-class Quantity(Checked):
+class Quantity(FrozenModel):
     """A measure of a game.
 
     Attributes

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from kswarms.agents.common.columns import names
+from kswarms.agents.common.columns import column_names
 from kswarms.analysis.results.tables import read_table
 
 
@@ -22,13 +22,13 @@ def read_conflicts(directory: Path, runs: Collection[str] | None = None, seen: b
     `runs` are the runs to read, by default all. `seen` also reads the column of that name, the robots that
     the sensors read: the bulk of the file. Errors are those of `read_table`.
     """
-    columns = [name for name in names("conflicts") if seen or name != "seen"]
+    columns = [name for name in column_names("conflicts") if seen or name != "seen"]
     return read_table(directory, "conflicts", columns, runs)
 
 
 def read_robots(directory: Path, runs: Collection[str]) -> pd.DataFrame:
     """Read `robots.parquet`: one row for each robot at the end of its game; `arms` is an array of dicts."""
-    return read_table(directory, "robots", names("robots"), runs)
+    return read_table(directory, "robots", column_names("robots"), runs)
 
 
 def read_contributions(directory: Path) -> pd.DataFrame:

@@ -5,12 +5,13 @@ from typing import Any, Final, Protocol
 
 import pandas as pd
 
-from kswarms.agents.common.columns import names
+from kswarms.agents.common.columns import column_names
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.results.tables import check_columns
 
 _POINT: Final = ("run", "scenario", "condition", "n", "seed")
-_OF_SWARM: Final = [name for name in names("runs") if name not in {*_POINT, "swarm", "duration", "ended"}]
+_NOT_OF_SWARM: Final = {*_POINT, "swarm", "duration", "ended"}
+_OF_SWARM: Final = [name for name in column_names("runs") if name not in _NOT_OF_SWARM]
 _MESA: Final = {"RunId", "iteration", "Step", "AgentID"}
 _MODEL_REPORTERS: Final = {"time", "game_time", "ended"}
 _AGENT_REPORTERS: Final = {"swarm", "state", "puck", "x", "y", "heading"}
@@ -112,5 +113,6 @@ def _text(value: Any) -> str:
 
 
 def _typed(rows: Sequence[Mapping[str, Any]], table: str) -> pd.DataFrame:
-    frame = pd.DataFrame(rows, columns=names(table)).astype(dict.fromkeys(names(table, "integer"), "int64"))
-    return check_columns(frame, table, names(table))
+    columns, integers = column_names(table), column_names(table, "integer")
+    frame = pd.DataFrame(rows, columns=columns).astype(dict.fromkeys(integers, "int64"))
+    return check_columns(frame, table, columns)

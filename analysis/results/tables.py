@@ -9,7 +9,7 @@ import pandas as pd
 import pyarrow.parquet as pq
 from pandas.api.types import is_numeric_dtype
 
-from kswarms.agents.common.columns import TABLES, names
+from kswarms.agents.common.columns import TABLES, column_names
 from kswarms.agents.common.errors import InputError
 
 # What Arrow and pandas raise for damaged files: mostly OSError and ValueError.
@@ -36,7 +36,7 @@ def read_table(
     path = directory / f"{table}.parquet"
     if not path.is_file():
         raise InputError("results", str(directory), f"must be a directory that holds {path.name}")
-    required = names(table) if columns is None else columns
+    required = column_names(table) if columns is None else columns
     with _readable(path):
         present = pq.read_schema(path).names
     missing = [name for name in required if name not in present]
@@ -59,7 +59,7 @@ def check_columns(rows: pd.DataFrame, table: str, required: Sequence[str]) -> pd
             raise InputError(field, None, "must be given in every row")
         if kind in ("integer", "real") and not is_numeric_dtype(rows[name]):
             raise InputError(field, str(rows[name].dtype), "must be a column of numbers")
-    return rows.astype({name: str for name in names(table, "text") if name in required})
+    return rows.astype({name: str for name in column_names(table, "text") if name in required})
 
 
 def count_rows(path: Path) -> int:

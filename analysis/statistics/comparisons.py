@@ -24,7 +24,7 @@ from kswarms.analysis.statistics.intervals import (
     check_seeds,
 )
 
-_MOST_SEEDS: Final = 1_000_000
+_MAX_SEEDS: Final = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -142,5 +142,5 @@ def more_seeds(differences: ArrayLike, power: float = 0.8, confidence: float = C
         return not test.power(size, count, 1 - confidence) < power
 
     # The solver of statsmodels fails at large effects.
-    more = bisect_left(range(seeds, _MOST_SEEDS), True, key=is_enough)
-    return more if seeds + more < _MOST_SEEDS else None
+    more = bisect_left(range(seeds, _MAX_SEEDS), True, key=is_enough)
+    return more if seeds + more < _MAX_SEEDS else None

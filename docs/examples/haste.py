@@ -22,9 +22,9 @@ class EpsilonGreedy(Rule):
 
     epsilon: float = Field(0.1, ge=0, le=1)
 
-    def prefer(self, bandit: Bandit, draws: Generator) -> int:
+    def prefer(self, bandit: Bandit, rng: Generator) -> int:
         """Return an arm; every arm has been tried."""
         arms = len(bandit.count)
-        if draws.random() < self.epsilon:
-            return int(draws.integers(arms))
+        if rng.random() < self.epsilon:
+            return int(rng.integers(arms))
         return max(range(arms), key=bandit.value)

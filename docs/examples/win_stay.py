@@ -12,8 +12,8 @@ class WinStay:
     def __init__(self, setting: Setting, enough: float = 1.0) -> None:
         self.actions = setting.actions
         self.enough = enough
-        draws = setting.streams.draws(Purpose.POLICY)
-        self.arms = [int(draws.integers(len(self.actions))) for _ in range(setting.swarms)]
+        rng = setting.streams.generator(Purpose.POLICY)
+        self.arms = [int(rng.integers(len(self.actions))) for _ in range(setting.swarms)]
         self.opponent = -1
 
     def choose(self, opponent: int) -> Action:

@@ -128,11 +128,11 @@ def _random_stations(
     seed: int, bases: Floats, half: float, station_radius: float, base_radius: float
 ) -> Floats:
     """Draw two stations that overlap neither bases, walls nor each other."""
-    draws = stream(seed, ENVIRONMENT, Purpose.STATIONS)
+    rng = stream(seed, ENVIRONMENT, Purpose.STATIONS)
     limit = max(0.0, half - station_radius)
     stations: list[Floats] = []
     for _ in range(100_000):
-        place = draws.uniform(-limit, limit, size=2)
+        place = rng.uniform(-limit, limit, size=2)
         clear = all(math.dist(place, base) >= station_radius + base_radius for base in bases)
         if clear and all(math.dist(place, other) >= 2 * station_radius for other in stations):
             stations.append(place)

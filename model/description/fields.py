@@ -6,9 +6,9 @@ from pydantic import Field, InstanceOf, field_serializer, model_validator
 
 from kswarms.agents.actions import Action
 from kswarms.agents.body import BODIES, Body
-from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.limits import LONGEST_DISTANCE, LONGEST_TIME, MOST_PLACES, MOST_PUCKS
+from kswarms.agents.common.limits import LONGEST_DISTANCE, LONGEST_TIME, MAX_PLACES, MAX_PUCKS
 from kswarms.agents.policies.spec import PolicySpec, parse_policies
 from kswarms.model.description.parameters import PRESETS, Parameters, parse_parameters
 
@@ -17,7 +17,7 @@ LAYOUTS: Final[tuple[Layout, ...]] = get_args(Layout)
 Place = tuple[float, float]
 
 
-class SwarmFields(Checked):
+class SwarmFields(FrozenModel):
     """Fields of a swarm that do not depend on its size.
 
     Attributes
@@ -52,7 +52,7 @@ class SwarmFields(Checked):
         return self.policy if isinstance(self.policy, str) else "+".join(map(str, self.policy))
 
 
-class GameFields(Checked):
+class GameFields(FrozenModel):
     """Fields of a game that do not depend on the number of robots.
 
     Attributes
@@ -85,16 +85,16 @@ class GameFields(Checked):
     """
 
     layout: Layout = "symmetric"
-    stations: tuple[Place, ...] = Field((), max_length=MOST_PLACES)
-    bases: tuple[Place, ...] = Field((), max_length=MOST_PLACES)
+    stations: tuple[Place, ...] = Field((), max_length=MAX_PLACES)
+    bases: tuple[Place, ...] = Field((), max_length=MAX_PLACES)
     side: float = Field(2.0, gt=0, le=LONGEST_DISTANCE)
     body: Body = BODIES["krembot-sim"]
     parameters: Parameters = PRESETS["fitted"]
     actions: tuple[Action, ...] = ()
-    supply: int | None = Field(None, ge=1, le=MOST_PUCKS)
+    supply: int | None = Field(None, ge=1, le=MAX_PUCKS)
     learning: float = Field(0.0, ge=0)
     duration: float = Field(600.0, gt=0)
-    puck_limit: int | None = Field(None, ge=1, le=MOST_PUCKS)
+    puck_limit: int | None = Field(None, ge=1, le=MAX_PUCKS)
     sample_period: float = Field(10.0, gt=0, le=LONGEST_TIME)
 
     @model_validator(mode="before")

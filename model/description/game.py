@@ -8,7 +8,7 @@ from pydantic import Field, field_validator, model_validator
 
 from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.limits import LONGEST_STEP, MOST_PERIODS, MOST_ROBOTS
+from kswarms.agents.common.limits import LONGEST_STEP, MAX_PERIODS, MAX_ROBOTS
 from kswarms.agents.conformance.trial import try_policy
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.registry import ALIASES, POLICIES
@@ -27,7 +27,7 @@ class Swarm(SwarmFields):
         Number of robots.
     """
 
-    size: int = Field(ge=1, le=MOST_ROBOTS)
+    size: int = Field(ge=1, le=MAX_ROBOTS)
 
 
 class Game(GameFields):
@@ -95,8 +95,8 @@ class Game(GameFields):
         if parameters.period * body.top_speed * fastest > LONGEST_STEP * body.radius:
             rule = f"must be so short that a robot covers at most {LONGEST_STEP} of its radius"
             raise InputError("period", parameters.period, rule)
-        if (self.learning + self.duration) / parameters.period > MOST_PERIODS:
-            rule = f"must be at most {MOST_PERIODS} periods, learning included"
+        if (self.learning + self.duration) / parameters.period > MAX_PERIODS:
+            rule = f"must be at most {MAX_PERIODS} periods, learning included"
             raise InputError("duration", self.duration, rule)
         if body.radius + body.sensing_scale * parameters.wall_distance > self.side / 2:
             # Otherwise a robot could see walls in every direction and find no free heading.
@@ -147,8 +147,8 @@ def apportion(n: int, shares: Sequence[int]) -> list[int]:
     >>> apportion(6, [1, 2, 1])
     [2, 3, 1]
     """
-    if n > MOST_ROBOTS:
-        raise InputError("n", n, f"must be at most {MOST_ROBOTS}")
+    if n > MAX_ROBOTS:
+        raise InputError("n", n, f"must be at most {MAX_ROBOTS}")
     total = sum(shares)
     sizes = [n * share // total for share in shares]
     by_remainder = sorted(range(len(shares)), key=lambda k: -(n * shares[k] % total))

@@ -6,12 +6,12 @@ from typing import Final, Literal
 from pydantic import Field
 
 from kswarms.agents.actions import AWAY, TOWARDS, Action
-from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.limits import LONGEST_DISTANCE, LONGEST_TIME, SHORTEST_PERIOD, SLOWEST_TURN
 
 
-class Parameters(Checked):
+class Parameters(FrozenModel):
     """Free parameters of the world: fixed neither by the thesis nor by the public simulator.
 
     The defaults are fitted to Table 6.1. Distances are for the body in the simulator's scale; sensing

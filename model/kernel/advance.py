@@ -19,7 +19,7 @@ PUCKS: Final = 0
 PERCEPTS: Final = 1
 MOTION: Final = 2
 
-_MOST_REFRESHES: Final = 50
+_MAX_REFRESHES: Final = 50
 """Maximum number of listings of neighbours in one period; only bodies without room need more."""
 
 
@@ -63,7 +63,7 @@ def advance(m: Memory, tick: int, until: int) -> tuple[int, int]:
 @compiled
 def _part_unlisted(m: Memory) -> None:
     """Part bodies that moved so far that they may overlap bodies outside their lists of neighbours."""
-    for _ in range(_MOST_REFRESHES):
+    for _ in range(_MAX_REFRESHES):
         if not refresh(m):
             return
         part(m)

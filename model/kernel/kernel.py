@@ -15,7 +15,7 @@ from kswarms.model.kernel.advance import advance
 from kswarms.model.kernel.arrays import CONTACT, EVENT, MAX_CONTACTS, PAIR, SCALARS, STATION, WORK, Memory
 from kswarms.model.kernel.neighbours import room_for_pairs
 
-_MOST_CELLS: Final = 1024
+_MAX_CELLS: Final = 1024
 """Maximum number of grid rows; larger arenas get larger cells."""
 
 
@@ -44,7 +44,7 @@ class Kernel:
         stations["x"], stations["y"] = arena.stations.T
         stations["supply"] = game.supply or -1
         pair_reach = float(scalars["pair_reach"][0])
-        cells = max(1, min(_MOST_CELLS, int(2 * arena.half / pair_reach)))
+        cells = max(1, min(_MAX_CELLS, int(2 * arena.half / pair_reach)))
         work: Records = np.zeros(n, dtype=WORK)
         work["origin_x"] = np.nan  # no neighbours listed yet
         self.memory = Memory(

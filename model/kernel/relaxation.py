@@ -18,7 +18,7 @@ _CLOSE: Final = 0.1
 """Gap of a close pair, in radii."""
 _PLAIN_PASSES: Final = 3
 """Passes without momentum, which suffice except in jams."""
-_MOST_MOMENTUM: Final = 0.8
+_MAX_MOMENTUM: Final = 0.8
 """Maximum fraction of the last pass's move that a pass adds."""
 _HALF_MOMENTUM: Final = 6
 """Passes with momentum after which that fraction is a half."""
@@ -203,7 +203,7 @@ def _measure_overlaps(positions: Floats, radius: float, work: Records, pairs: Re
 def _momentum(done: int) -> float:
     """Return the fraction of the last pass's move that is added after `done` passes."""
     passes = done - _PLAIN_PASSES + 1
-    return min(_MOST_MOMENTUM, max(0.0, passes / (passes + _HALF_MOMENTUM)))
+    return min(_MAX_MOMENTUM, max(0.0, passes / (passes + _HALF_MOMENTUM)))
 
 
 @compiled

@@ -19,7 +19,7 @@ from pydantic import Field, model_validator
 
 from kswarms.agents.common.arrays import Floats
 from kswarms.agents.common.atomic_files import remove_temporary_files
-from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.calibration.games import START, Candidate, Cell, texts_of, to_candidate, to_place
 from kswarms.scenarios.calibration.shares import Play, Shares
@@ -41,7 +41,7 @@ IntervalOf = Callable[[Floats, Callable[[Floats], Floats]], Any]
 `kswarms.analysis.statistics.intervals.bootstrap_interval` does."""
 
 
-class Setup(Checked):
+class Setup(FrozenModel):
     """Settings of a fit. Parameters that are not fitted keep their start values."""
 
     free: tuple[str, ...] = tuple(START)

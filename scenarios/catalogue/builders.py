@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.learning.rewards import REWARDS
 from kswarms.agents.learning.selection_rules import RULES
 from kswarms.scenarios.description.condition import Condition, SwarmRule
@@ -61,5 +61,5 @@ def _call(name: str, defaults: Mapping[str, Any], arguments: Mapping[str, Any]) 
     return f"{name}({', '.join(given)})" if given else name
 
 
-def _defaults(kind: type[Checked]) -> dict[str, Any]:
+def _defaults(kind: type[FrozenModel]) -> dict[str, Any]:
     return {name: field.default for name, field in kind.model_fields.items()}

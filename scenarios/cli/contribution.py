@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 import typer
 
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.limits import MOST_SEEDS
+from kswarms.agents.common.limits import MAX_SEEDS
 from kswarms.scenarios.catalogue.selection import select_scenarios
 from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, complete_scenario_ids, parse_directory
 from kswarms.scenarios.cli.printing import print_table
@@ -28,7 +28,7 @@ def contribution(
         str | None, typer.Option(metavar="LIST", help="Robots, from 0, or swarms: 3,7 or S2. [default: all]")
     ] = None,
     seeds: Annotated[
-        int, typer.Option(min=1, max=MOST_SEEDS, help="Games; each is also played without each robot.")
+        int, typer.Option(min=1, max=MAX_SEEDS, help="Games; each is also played without each robot.")
     ] = 20,
     first_seed: FirstSeed = 0,
     absent_from: Annotated[

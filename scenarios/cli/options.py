@@ -7,16 +7,16 @@ from typing import Annotated, Final
 import typer
 
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.limits import LAST_SEED, MOST_JOBS
+from kswarms.agents.common.limits import MAX_JOBS, MAX_SEED
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selection import DEFAULT_N, DEFAULT_SCENARIO, select_scenarios
 from kswarms.scenarios.runs.run import Run, digest
 
 CPUS: Final = os.cpu_count() or 1
 Jobs = Annotated[
-    int, typer.Option(min=1, max=MOST_JOBS, show_default="one for each CPU", help="Worker processes.")
+    int, typer.Option(min=1, max=MAX_JOBS, show_default="one for each CPU", help="Worker processes.")
 ]
-FirstSeed = Annotated[int, typer.Option(min=0, max=LAST_SEED, help="First seed.")]
+FirstSeed = Annotated[int, typer.Option(min=0, max=MAX_SEED, help="First seed.")]
 
 
 def complete_ids(incomplete: str) -> list[tuple[str, str]]:
@@ -55,7 +55,7 @@ Robots = Annotated[
     typer.Option("--n", help="Robots in all, a multiple of the sum of the shares. [default: near 20]"),
 ]
 Seed = Annotated[
-    int | None, typer.Option("--seed", min=0, max=LAST_SEED, help="Seed of the game. [default: 0]")
+    int | None, typer.Option("--seed", min=0, max=MAX_SEED, help="Seed of the game. [default: 0]")
 ]
 
 

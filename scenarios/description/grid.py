@@ -6,7 +6,7 @@ from math import prod
 from typing import Any, Final
 
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.limits import MOST_POINTS
+from kswarms.agents.common.limits import MAX_POINTS
 from kswarms.agents.policies.editing import with_learning
 from kswarms.agents.policies.spec import parse_policies
 from kswarms.model.description.fields import GameFields
@@ -32,8 +32,8 @@ def expand_grid(conditions: Iterable[Condition], grid: Grid) -> tuple[Condition,
         if len(set(map(repr, values))) < len(values) or not values:
             raise InputError(f"grid.{field}", list(values), "must be a list of different values")
     size = len(conditions) * prod(map(len, grid.values()))
-    if size > MOST_POINTS and not any(condition.grid_point for condition in conditions):
-        raise InputError("grid", size, f"must have at most {MOST_POINTS} points, over all conditions")
+    if size > MAX_POINTS and not any(condition.grid_point for condition in conditions):
+        raise InputError("grid", size, f"must have at most {MAX_POINTS} points, over all conditions")
     expanded: list[Condition] = []
     for condition in conditions:
         for field, value in condition.grid_point:
@@ -90,7 +90,7 @@ def _with_field(condition: Condition, field: str, value: Value) -> Condition:
         swarm = _with_swarm_field(condition.swarms[k], rest, value)
         return condition.replace(swarms=(*condition.swarms[:k], swarm, *condition.swarms[k + 1 :]))
     known = ", ".join([*_FIELDS, "parameters", "parameters.friction", *_LEARNING, "reward.delta", *numbers])
-    raise InputError(field, value, f"no such field; there are {known} and so on")
+    raise InputError(field, value, f"unknown field; allowed: {known} and so on")
 
 
 def _with_swarm_field(swarm: SwarmRule, field: str, value: Value) -> SwarmRule:
@@ -103,7 +103,7 @@ def _with_swarm_field(swarm: SwarmRule, field: str, value: Value) -> SwarmRule:
 
 def _require_learner(swarms: Iterable[SwarmRule], part: str) -> None:
     specs = (spec for swarm in swarms for spec in parse_policies(swarm.policy))
-    if not any(spec.learns_by(part) for spec in specs):
+    if not any(spec.learner_part(part) for spec in specs):
         raise InputError(part, "", "needs a swarm of learners in every condition")
 
 

@@ -10,9 +10,9 @@ from typing import Any, Final, Self
 import tomlkit
 from pydantic import Field, model_validator
 
-from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.limits import LONGEST_NAME, LONGEST_TITLE, MOST_SEEDS
+from kswarms.agents.common.limits import LONGEST_NAME, LONGEST_TITLE, MAX_SEEDS
 from kswarms.model.description.game import Game
 from kswarms.scenarios.description.condition import ONE_LINE, Condition, Value
 from kswarms.scenarios.description.grid import collapse_grid, expand_grid
@@ -25,7 +25,7 @@ LEARNING: Final = 3000.0
 """Duration of the learning phase of learners in the source (s, section 3.1)."""
 
 
-class Scenario(Checked):
+class Scenario(FrozenModel):
     """An experiment: its curves, numbers of robots and seeds.
 
     Attributes
@@ -49,7 +49,7 @@ class Scenario(Checked):
     title: str = Field(min_length=1, max_length=LONGEST_TITLE, pattern=ONE_LINE)
     conditions: tuple[Condition, ...] = Field(min_length=1)
     densities: tuple[int, ...] = Field(default=DENSITIES, min_length=1)
-    seeds: int = Field(default=SEEDS, ge=1, le=MOST_SEEDS)
+    seeds: int = Field(default=SEEDS, ge=1, le=MAX_SEEDS)
     grid: dict[str, tuple[Value, ...]] = {}
 
     def __hash__(self) -> int:

@@ -76,7 +76,7 @@ def learning_of(policies: list[str]) -> Learning | None:
     for policy in policies:
         try:
             for spec in parse_policies(policy):
-                reward, rule = spec.learns_by("reward"), spec.learns_by("rule")
+                reward, rule = spec.learner_part("reward"), spec.learner_part("rule")
                 if reward is not None and rule is not None:
                     delta, gamma = (
                         _number(kinds[call.name].model_fields, call.arguments, name)

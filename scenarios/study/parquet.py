@@ -8,7 +8,7 @@ from typing import Any, Final
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from kswarms.agents.common.columns import ARM, RECORDED_TABLES, SCHEMA_VERSION, TABLES, Column, names
+from kswarms.agents.common.columns import ARM, RECORDED_TABLES, SCHEMA_VERSION, TABLES, Column, column_names
 from kswarms.scenarios.study.ledger import Curve, Ledger, Point
 
 STUDY_TABLES: Final = ("runs", "policies", *RECORDED_TABLES)
@@ -74,7 +74,7 @@ def export(ledger: Ledger, directory: Path) -> list[Path]:
 
 def _grid(ledger: Ledger) -> tuple[list[Column], dict[Curve, dict[str, Any]]]:
     """Return a column for each field of the grids (``grid.n`` if a column ``n`` exists), and the values."""
-    taken = {*names("runs"), *names("policies")}
+    taken = {*column_names("runs"), *column_names("policies")}
     points = {
         curve: {f"grid.{field}" if field in taken else field: value for field, value in point.items()}
         for curve, point in ledger.grid_points().items()

@@ -24,7 +24,7 @@ from kswarms.agents.learning.selection_rules import RULES, Rule, make_rule
 from kswarms.agents.policies.interface import Policy, Setting
 from kswarms.agents.policies.learner import Learner
 from kswarms.agents.policies.registry import POLICIES
-from kswarms.agents.policies.saved import save
+from kswarms.agents.policies.saved import save_learned
 from kswarms.agents.policies.spec import Factory, make_policy
 from kswarms.agents.streams import Purpose
 
@@ -115,7 +115,7 @@ class Greedy(Unseeded):
         self.streams = where.streams
 
     def choose(self, opponent: int) -> Action:
-        return self.actions[self.streams.draws(Purpose.LEG).random() < 0.5]
+        return self.actions[self.streams.generator(Purpose.LEG).random() < 0.5]
 
 
 class Unstoppable(Learner):
@@ -146,7 +146,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[int, str]:
         learner = Learner(where := setting(swarm))
         play_conflicts(learner, where)
         paths[swarm] = str(Path(folder, f"swarm-{swarm + 1}.json"))
-        save(Path(paths[swarm]), swarm + 1, [learner.snapshot()])
+        save_learned(Path(paths[swarm]), swarm + 1, [learner.snapshot()])
     return paths
 
 

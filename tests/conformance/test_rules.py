@@ -13,7 +13,7 @@ from numpy.random import Generator
 
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.conformance import RULE_CHECKS
-from kswarms.agents.conformance.rules import ARMS, choose_arms, draws
+from kswarms.agents.conformance.rules import ARMS, choose_arms, exploration_rng
 from kswarms.agents.learning.bandit import Bandit
 from kswarms.agents.learning.selection_rules import RULES, UCB, Greedy, Rule, UniformRandom
 
@@ -35,7 +35,7 @@ def check_every_arm_is_reachable(rule: type[Rule]) -> None:
     for arms in ARMS:
         for arm in range(arms):
             known = tried([float(other == arm) for other in range(arms)])
-            assert arm in {rule().choose(known, draws(seed)) for seed in range(100)}
+            assert arm in {rule().choose(known, exploration_rng(seed)) for seed in range(100)}
 
 
 def check_untried_arms_come_first(rule: type[Rule]) -> None:
@@ -46,9 +46,9 @@ def check_untried_arms_come_first(rule: type[Rule]) -> None:
 
 def check_ties_are_broken_by_the_robots_stream(rule: type[Rule]) -> None:
     for arms in ARMS:
-        by_stream = [rule().choose(tried([0.5] * arms), draws(seed)) for seed in range(200)]
+        by_stream = [rule().choose(tried([0.5] * arms), exploration_rng(seed)) for seed in range(200)]
         assert set(by_stream) == set(range(arms))
-        assert [rule().choose(tried([0.5] * arms), draws(seed)) for seed in range(200)] == by_stream
+        assert [rule().choose(tried([0.5] * arms), exploration_rng(seed)) for seed in range(200)] == by_stream
 
 
 class Moody(Greedy):
@@ -65,9 +65,9 @@ class Thawed(UCB):
 
     model_config = {"frozen": False}
 
-    def prefer(self, bandit: Bandit, draws: Generator) -> int:
+    def prefer(self, bandit: Bandit, rng: Generator) -> int:
         self.gamma += 0.1
-        return super().prefer(bandit, draws)
+        return super().prefer(bandit, rng)
 
 
 class Lenient(Greedy):
@@ -79,36 +79,36 @@ class Lenient(Greedy):
 class Unseeded(Greedy):
     """Draws from another source of randomness."""
 
-    def choose(self, bandit: Bandit, draws: Generator) -> int:
+    def choose(self, bandit: Bandit, rng: Generator) -> int:
         return random.randrange(len(bandit.count))
 
 
 class OneTooFar(UniformRandom):
     """Counts arms from 1."""
 
-    def choose(self, bandit: Bandit, draws: Generator) -> int:
-        return 1 + super().choose(bandit, draws)
+    def choose(self, bandit: Bandit, rng: Generator) -> int:
+        return 1 + super().choose(bandit, rng)
 
 
 class First(Greedy):
     """Always chooses the first arm."""
 
-    def choose(self, bandit: Bandit, draws: Generator) -> int:
+    def choose(self, bandit: Bandit, rng: Generator) -> int:
         return 0
 
 
 class FirstOfEquals(Rule):
     """Greedy without random ties."""
 
-    def prefer(self, bandit: Bandit, draws: Generator) -> int:
+    def prefer(self, bandit: Bandit, rng: Generator) -> int:
         return bandit.best() or 0
 
 
 class Meddler(Greedy):
     """Changes the bandit."""
 
-    def choose(self, bandit: Bandit, draws: Generator) -> int:
-        arm = super().choose(bandit, draws)
+    def choose(self, bandit: Bandit, rng: Generator) -> int:
+        arm = super().choose(bandit, rng)
         bandit.choices += 1
         return arm
 

@@ -151,7 +151,7 @@ class Needing(Flat):
 class First(Rule):
     arm: int = 0
 
-    def prefer(self, bandit, draws):
+    def prefer(self, bandit, rng):
         return np.int64(self.arm)
 
 
@@ -162,5 +162,5 @@ class Greater(First):
 
 
 class Lost(First):
-    def prefer(self, bandit, draws):
+    def prefer(self, bandit, rng):
         return bandit.counts

@@ -53,7 +53,8 @@ def test_the_other_robots_keep_number_place_heading_policy_and_streams() -> None
     for robot in rest.robots:
         twin = complete.robots[robot.number]
         assert (robot.swarm, robot.policy_name) == (twin.swarm, twin.policy_name)
-        assert [robot._draws(p).random() for p in Purpose] == [twin._draws(p).random() for p in Purpose]
+        numbers = [robot._generator(p).random() for p in Purpose]
+        assert numbers == [twin._generator(p).random() for p in Purpose]
 
 
 @settings(max_examples=8)

@@ -45,7 +45,7 @@ from kswarms.agents.learning.selection_rules import Rule
 
 
 class Faulty(Rule):
-    def prefer(self, bandit, draws):
+    def prefer(self, bandit, rng):
         return 0 if bandit.choices < 5 else FAULT
 """
 SCENARIO = """

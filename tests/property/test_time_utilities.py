@@ -53,9 +53,10 @@ def test_the_utility_of_a_meeting_is_the_sum_over_pairs(own: Interaction, others
     pairs = [times.pair_utility(own, other) for other in others]
     size = sum(abs(times.time_utility(*other)) + 1e4 for other in others)
     assert times.inter_utility(own, others) == near(sum(pairs), size)
-    assert times.absent_to_swarm(others) == near(sum(times.absent_to_one(other) for other in others))
+    absent = sum(times.absence_utility_of_one(other) for other in others)
+    assert times.absence_utility_of_swarm(others) == near(absent)
     present = sum(times.time_utility(*other) for other in others)
-    assert times.present_to_own_swarm(others) == near(present, size)
+    assert times.presence_utility_of_own_swarm(others) == near(present, size)
     assert times.intra_utility(len(others), *own) == near(len(others) * times.time_utility(*own))
 
 
@@ -75,8 +76,10 @@ def test_the_wlu_of_times_equals_theorem_13(
     parts = (
         times.intra_utility(len(mates), *own),
         times.inter_utility(own, opponents),
-        effect_on_own_swarm(times.present_to_own_swarm(mates), times.absent_to_swarm(mates)),
-        times.absent_to_swarm(opponents),
+        effect_on_own_swarm(
+            times.presence_utility_of_own_swarm(mates), times.absence_utility_of_swarm(mates)
+        ),
+        times.absence_utility_of_swarm(opponents),
     )
     assert times.approximate_wlu(own, mates, opponents) == near(wlu_by_parts(*parts), *parts, 1e5)
 

@@ -81,39 +81,39 @@ def scenes(draw: st.DrawFn, largest: int = 60) -> Scene:
     rounding has no effect on the result.
     """
     game = draw(games(largest))
-    draws = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     n, radius = game.size, game.body.radius
     fastest = game.parameters.period * game.body.top_speed * 0.6
     crowding = draw(st.sampled_from((0.0, 0.5, 0.95)))
-    positions = crowd(draws, n, radius, game.side / 2, crowding, gap=2 * fastest)
-    scene = make_scene(game, positions, draws.uniform(-math.pi, math.pi, n), 0.0)
+    positions = crowd(rng, n, radius, game.side / 2, crowding, gap=2 * fastest)
+    scene = make_scene(game, positions, rng.uniform(-math.pi, math.pi, n), 0.0)
     robots = scene.states.robots
-    robots["phase"] = draws.integers(IDLE, ACTION + 1, n)
-    robots["carrying"] = draws.integers(0, 2, n)
-    robots["opponent"] = draws.integers(-1, n, n)
-    robots["stride"] = draws.choice((0.0, 0.5, 1.0), n, p=(0.2, 0.1, 0.7)) * fastest
-    robots["turn_rate"] = draws.choice((0.0, -0.296, 0.5), n, p=(0.6, 0.2, 0.2))
+    robots["phase"] = rng.integers(IDLE, ACTION + 1, n)
+    robots["carrying"] = rng.integers(0, 2, n)
+    robots["opponent"] = rng.integers(-1, n, n)
+    robots["stride"] = rng.choice((0.0, 0.5, 1.0), n, p=(0.2, 0.1, 0.7)) * fastest
+    robots["turn_rate"] = rng.choice((0.0, -0.296, 0.5), n, p=(0.6, 0.2, 0.2))
     return scene
 
 
 def crowd(
-    draws: np.random.Generator, n: int, radius: float, half: float, crowding: float, gap: float
+    rng: np.random.Generator, n: int, radius: float, half: float, crowding: float, gap: float
 ) -> Floats:
     """Place bodies one by one, each with probability `crowding` within `gap` (m) of an earlier one."""
     limit = half - radius
     positions = np.empty((n, 2))
     for robot in range(n):
         for _ in range(_TRIES):
-            place = draws.uniform(-limit, limit, 2)
-            if robot > 0 and draws.random() < crowding:
-                angle = draws.uniform(-math.pi, math.pi)
-                reach = 2 * radius + draws.uniform(0, gap)
-                beside = positions[draws.integers(robot)]
+            place = rng.uniform(-limit, limit, 2)
+            if robot > 0 and rng.random() < crowding:
+                angle = rng.uniform(-math.pi, math.pi)
+                reach = 2 * radius + rng.uniform(0, gap)
+                beside = positions[rng.integers(robot)]
                 place = np.clip(beside + reach * unit(angle), -limit, limit)
             if (np.hypot(*(positions[:robot] - place).T) >= 2 * radius).all():
                 break
         else:
-            return crowd(draws, n, radius, half, crowding / 2, gap)
+            return crowd(rng, n, radius, half, crowding / 2, gap)
         positions[robot] = place
     return positions
 

@@ -11,7 +11,7 @@ import pytest
 from benchmarks import bench, games
 from benchmarks import report as report_benchmark
 from benchmarks.games import Plan, WorkError, count_work, time_game
-from kswarms.agents.common.columns import names
+from kswarms.agents.common.columns import column_names
 from kswarms.analysis.results.runs import read_policies
 from kswarms.model.game_model import GameModel
 from kswarms.scenarios.catalogue import CATALOGUE
@@ -86,7 +86,7 @@ def test_a_random_study_has_the_columns_of_a_real_one(tmp_path: Path) -> None:
     rows = report_benchmark.write_study(tmp_path, scenarios, densities=1, seeds=2)
     assert rows == 2 * (2 + 5 * 3 + 5)
     for name in ("runs", "policies"):
-        assert tuple(pq.read_schema(tmp_path / f"{name}.parquet").names) == names(name)
+        assert tuple(pq.read_schema(tmp_path / f"{name}.parquet").names) == column_names(name)
     learned = read_policies(tmp_path)
     assert set(zip(learned["scenario"], learned["swarm"], learned["opponent"], strict=True)) == {
         *(("fig-6.8", 2, opponent) for opponent in (1, 2)),

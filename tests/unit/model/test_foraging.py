@@ -93,7 +93,7 @@ def test_numpy_numbers_are_accepted() -> None:
         ({"parameters": None}, "parameters=None: must be a valid dictionary or"),
         ({"record": ["model"]}, "record=['model']: must be a text"),
         ({"seed": True}, "seed=True: must be a whole number"),
-        ({"robots": 3}, "robots=3: no such field; there are layout, stations, "),
+        ({"robots": 3}, "robots=3: unknown field; allowed: layout, stations, "),
     ],
 )
 def test_bad_input_is_one_line_with_field_value_and_what_is_allowed(

@@ -1,16 +1,16 @@
 """The schema of the tables of results."""
 
-from kswarms.agents.common.columns import ARM, TABLES, data_dictionary, names
+from kswarms.agents.common.columns import ARM, TABLES, column_names, data_dictionary
 
 
 def test_names_can_be_selected_by_kind() -> None:
-    assert names("robots") == ("run", "robot", "swarm", "policy", "pucks", "t_a", "t_p", "arms")
-    assert names("robots", "text", "real") == ("run", "policy", "t_a", "t_p")
+    assert column_names("robots") == ("run", "robot", "swarm", "policy", "pucks", "t_a", "t_p", "arms")
+    assert column_names("robots", "text", "real") == ("run", "policy", "t_a", "t_p")
 
 
 def test_column_names_of_a_table_are_unique() -> None:
     for table in TABLES:
-        assert len(set(names(table))) == len(TABLES[table])
+        assert len(set(column_names(table))) == len(TABLES[table])
 
 
 def test_the_data_dictionary_has_every_table_and_column() -> None:

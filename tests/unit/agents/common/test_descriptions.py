@@ -7,11 +7,11 @@ from typing import Any
 import pytest
 
 from kswarms.agents.actions import AWAY, TOWARDS, Action
-from kswarms.agents.common.descriptions import Checked
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
 
 
-class Nested(Checked):
+class Nested(FrozenModel):
     """A nested description."""
 
     action: Action
@@ -29,7 +29,7 @@ class Nested(Checked):
         ({"duration": "soon"}, "duration='soon': must be a valid number"),
         ({"direction": 0}, "direction=0: must be -1 or 1"),
         *[({"name": name}, f"name={name!r}: ") for name in ("", "a+b", " pad ", "a,b", "x()", "f:X", "a\n")],
-        ({"speed": 3}, "speed=3: no such field; there are name, direction, duration"),
+        ({"speed": 3}, "speed=3: unknown field; allowed: name, direction, duration"),
     ],
 )
 def test_invalid_actions_are_refused(values: dict[str, Any], message: str) -> None:

@@ -49,7 +49,7 @@ def test_the_line_names_field_value_and_what_is_allowed(
 def test_errors_of_unknown_arguments_name_no_internals(text: str) -> None:
     with pytest.raises(InputError) as caught:
         make_policy(text, SETTING)
-    for word in ("__init__", "positional", "_fixed()", "Checked"):
+    for word in ("__init__", "positional", "_fixed()", "FrozenModel"):
         assert word not in str(caught.value)
 
 

@@ -108,5 +108,5 @@ def test_literal_arguments_are_not_shared_between_robots(
 
 def test_only_learners_have_a_reward() -> None:
     (learner,) = parse_policies("inter-learner(otherwise='fight')")
-    assert str(learner.learns_by("reward")) == "wlu"
-    assert parse_policies("avoid")[0].learns_by("reward") is None
+    assert str(learner.learner_part("reward")) == "wlu"
+    assert parse_policies("avoid")[0].learner_part("reward") is None

@@ -54,7 +54,7 @@ def test_payoffs_must_fill_the_matrix(payoffs: list[list[float]]) -> None:
 
 @pytest.mark.parametrize("actions", [("flight", "flight"), ()])
 def test_names_of_actions_are_unique(actions: tuple[str, ...]) -> None:
-    with pytest.raises(InputError, match=r"columns=.*must be actions of different names"):
+    with pytest.raises(InputError, match=r"columns=.*must be distinct action names"):
         NormalForm(ACTIONS, actions, np.zeros((2, len(actions))), np.zeros((2, len(actions))))
 
 
@@ -142,5 +142,5 @@ def test_each_pair_of_swarms_has_one_game(pairs: list[tuple[int, int]]) -> None:
 
 
 def test_a_swarm_has_the_same_actions_in_all_games() -> None:
-    with pytest.raises(InputError, match="must have swarm 2's actions of its other games"):
+    with pytest.raises(InputError, match="must give swarm 2 the same actions in all games"):
         games.polymatrix({(1, 1): DILEMMA, (1, 2): SKEWED, (2, 2): DILEMMA})

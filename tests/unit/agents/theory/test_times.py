@@ -32,11 +32,11 @@ def test_mixed() -> None:
 
 
 def test_absence_and_presence() -> None:
-    assert times.absent_to_one(MATES[0]) == 18.0
-    assert times.absent_to_swarm(MATES) == pytest.approx(29.0 + 7.0)
-    assert times.absent_to_swarm(OPPONENTS) == 14.0 + 7.0
-    assert times.present_to_own_swarm(MATES) == pytest.approx(29.0 - 4.0)
-    assert times.absent_to_swarm([]) == times.present_to_own_swarm([]) == 0.0
+    assert times.absence_utility_of_one(MATES[0]) == 18.0
+    assert times.absence_utility_of_swarm(MATES) == pytest.approx(29.0 + 7.0)
+    assert times.absence_utility_of_swarm(OPPONENTS) == 14.0 + 7.0
+    assert times.presence_utility_of_own_swarm(MATES) == pytest.approx(29.0 - 4.0)
+    assert times.absence_utility_of_swarm([]) == times.presence_utility_of_own_swarm([]) == 0.0
 
 
 def test_the_wlu_of_times_has_the_corrected_sign() -> None:

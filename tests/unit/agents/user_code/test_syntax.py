@@ -86,7 +86,7 @@ def test_errors_of_unknown_names_list_the_known_names() -> None:
     ("text", "line"),
     [
         ("ucb(gamma=-1)", "rule.gamma=-1: must be greater than or equal to 0"),
-        ("ucb(epsilon=1)", "rule.epsilon=1: no such field; there are gamma"),
+        ("ucb(epsilon=1)", "rule.epsilon=1: unknown field; allowed: gamma"),
         ("discounted-ucb(discount=1.5)", "rule.discount=1.5: must be less than or equal to 1"),
         ("periodic-random(every=0)", "rule.every=0: must be greater than or equal to 1"),
     ],

@@ -69,9 +69,9 @@ def test_a_finding_can_be_changed() -> None:
         ("not TOML", r"findings='.*mine\.toml': must be TOML: Expected '='"),
         (
             HEAD + COMPARE + "above = 3",
-            r"claim\.compare\.above=3: no such field; there are densities, kind, left",
+            r"claim\.compare\.above=3: unknown field; allowed: densities, kind, left",
         ),
-        (HEAD + COMPARE + "[notes]", r"notes=\{\}: no such field; there are findings"),
+        (HEAD + COMPARE + "[notes]", r"notes=\{\}: unknown field; allowed: findings"),
         (HEAD + COMPARE.replace(">", "≈"), r"relation='≈': must be '>', '>=', '<', '<=' or 'within'"),
         (HEAD + COMPARE.replace("compare", "guess"), r"findings\.0\.claim=.*'compare', 'overtake'"),
         (HEAD + COMPARE + "margin = -1", r"margin=-1: must be greater than or equal to 0"),

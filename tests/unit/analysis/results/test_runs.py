@@ -5,13 +5,14 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from kswarms.agents.common.columns import names
+from kswarms.agents.common.columns import column_names
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.results.runs import read_policies, read_results, read_runs
 
-RUNS_TEXT, RUNS_NUMBERS = names("runs", "text"), names("runs", "integer", "real")
+RUNS_TEXT, RUNS_NUMBERS = column_names("runs", "text"), column_names("runs", "integer", "real")
 READERS = {"runs": read_runs, "policies": read_policies}
-POLICIES_TEXT, POLICIES_NUMBERS = names("policies", "text"), names("policies", "integer", "real")
+POLICIES_TEXT = column_names("policies", "text")
+POLICIES_NUMBERS = column_names("policies", "integer", "real")
 
 
 @pytest.fixture

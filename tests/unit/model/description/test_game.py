@@ -144,7 +144,7 @@ def test_presets_and_limits_have_short_forms() -> None:
         ({"puck_limit": -1}, "puck_limit=-1: must be greater than or equal to 1"),
         ({"supply": 2.5}, "supply=2.5: "),
         ({"parameters": {"friction": -1}}, "parameters.friction=-1: "),
-        ({"speed": 1}, "speed=1: no such field; there are layout, stations, "),
+        ({"speed": 1}, "speed=1: unknown field; allowed: layout, stations, "),
         ({"body": {"radius": 0.1}}, "body.sensor_range=None: is required"),
         ({"body": {**LARGE, "radius": 0}}, "body.radius=0: must be greater than or equal to 0.001"),
         ({"stations": [(0.0, 0.9)]}, "station 1=[0.0, 0.9]: with radius 0.16 m must lie inside the walls"),

@@ -166,7 +166,7 @@ def test_a_foreign_file_is_refused_and_kept(content: str, tmp_path: Path) -> Non
         ({"validation_seeds": 4}, "validation_seeds=4: must be greater"),
         ({"validation_seeds": 9001}, "validation_seeds=9001: must be less"),
         ({"densities": ()}, "densities=()"),
-        ({"budget": 3}, "budget=3: no such field"),
+        ({"budget": 3}, "budget=3: unknown field"),
     ],
 )
 def test_an_invalid_setup_is_refused(change: dict[str, object], complaint: str) -> None:

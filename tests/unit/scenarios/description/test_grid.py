@@ -68,12 +68,12 @@ def test_fields_of_games_and_swarms() -> None:
 @pytest.mark.parametrize(
     ("grid", "message"),
     [
-        ({"speed": [1]}, "grid.speed=1: no such field; there are layout, "),
-        ({"name": ["a"]}, "grid.name='a': no such field"),
-        ({"parameters.speed": [1]}, "grid.parameters.speed=1: no such field"),
+        ({"speed": [1]}, "grid.speed=1: unknown field; allowed: layout, "),
+        ({"name": ["a"]}, "grid.name='a': unknown field"),
+        ({"parameters.speed": [1]}, "grid.parameters.speed=1: unknown field"),
         ({"parameters.friction": [-1]}, "grid.parameters.friction=-1: must be greater than or equal to 0"),
-        ({"S3.drive": [0.5]}, "grid.S3.drive=0.5: no such field"),
-        ({"S1.speed": [0.5]}, "grid.S1.speed=0.5: no such field; there are policy, drive"),
+        ({"S3.drive": [0.5]}, "grid.S3.drive=0.5: unknown field"),
+        ({"S1.speed": [0.5]}, "grid.S1.speed=0.5: unknown field; allowed: policy, drive"),
         ({"S1.rule.gamma": [0.5]}, "grid.S1.rule.gamma=0.5: needs a swarm of learners"),
         ({"side": []}, "grid.side=[]: must be a list of different values"),
         ({"side": [2, 3, 2]}, "grid.side=[2, 3, 2]: must be a list of different values"),

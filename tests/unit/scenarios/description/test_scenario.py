@@ -158,9 +158,9 @@ def test_a_condition_without_a_valid_game_is_refused(world: dict[str, object]) -
         ("inter-learner(reward='wlu(delta=1.5)')", "=1.5: must be less than or equal to 1"),
         ("inter-learner(reward='wlu(b=0)')", "=0: must be greater than 0"),
         ("inter-learner(reward='wlu(b=3)')", "=3: must be less than 3"),
-        ("inter-learner(reward='wlu(beta=3)')", "beta=3: no such field; there are delta, b"),
+        ("inter-learner(reward='wlu(beta=3)')", "beta=3: unknown field; allowed: delta, b"),
         ("inter-learner(reward='wlu(delta=0.1')", "must be name or name(key=value, …)"),
-        ("avoid(speed=3)", "policy.speed=3: no such field; there are none"),
+        ("avoid(speed=3)", "policy.speed=3: unknown field; allowed: none"),
     ],
 )
 def test_an_invalid_policy_is_refused_with_a_reason(policy: str, complaint: str) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kswarms.agents.policies.saved import save
+from kswarms.agents.policies.saved import save_learned
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.runs import run as module
 from kswarms.scenarios.runs.run import code_version, describe_curve, digest, expand
@@ -102,15 +102,15 @@ def test_the_digest_covers_game_seed_and_version(monkeypatch: pytest.MonkeyPatch
 def test_the_digest_covers_the_content_of_learned_policies(tmp_path: Path) -> None:
     file = tmp_path / "learned.json"
     arm = {"opponent": 1, "action": "fight", "reward": 1.0, "time": 10.0, "count": 2.0, "q": 0.1}
-    save(file, 2, [[arm]])
+    save_learned(file, 2, [[arm]])
     scenario = CATALOGUE["fig-6.1c"]
     avoid, _ = scenario.conditions[0].swarms
     loading = (avoid, avoid.replace(policy=f"avoid+learned(file='{file}')"))
     game = scenario.conditions[0].replace(swarms=loading).game(8)
     name = digest(game, 0)
-    save(file, 2, [[arm]])
+    save_learned(file, 2, [[arm]])
     assert digest(game, 0) == name
-    save(file, 2, [[arm | {"action": "flight"}]])
+    save_learned(file, 2, [[arm | {"action": "flight"}]])
     assert digest(game, 0) != name
 
 

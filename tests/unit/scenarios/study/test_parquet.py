@@ -10,7 +10,7 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
-from kswarms.agents.common.columns import SCHEMA_VERSION, TABLES, names
+from kswarms.agents.common.columns import SCHEMA_VERSION, TABLES, column_names
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.runs.outcome import Failure, Outcome
 from kswarms.scenarios.runs.run import Run, expand
@@ -30,7 +30,7 @@ def make_runs(*scenarios: str, densities: tuple[int, ...] = (6, 10), seeds: int 
 
 def make_row(table: str, **values: object) -> dict[str, object]:
     """Return a row without the columns of its point: the given values, and one for each other column."""
-    return {name: VALUES[KINDS[name]] for name in names(table)[5:]} | values
+    return {name: VALUES[KINDS[name]] for name in column_names(table)[5:]} | values
 
 
 def make_outcome(run: Run) -> Outcome:
@@ -86,7 +86,7 @@ def test_tables_have_the_columns_of_the_schema_and_its_version(tmp_path: Path) -
         assert schema.equals(arrow_schema(TABLES[table]))
         assert schema.metadata[b"kswarms_schema"] == str(SCHEMA_VERSION).encode()
     types = {"integer": "int64", "real": "double", "text": "string"}
-    assert [str(arrow_schema(TABLES["runs"]).field(name).type) for name in names("runs")] == [
+    assert [str(arrow_schema(TABLES["runs"]).field(name).type) for name in column_names("runs")] == [
         types[column.kind] for column in TABLES["runs"]
     ]
 
@@ -183,7 +183,7 @@ def test_a_replay_replaces_records_but_does_not_remove_them(tmp_path: Path) -> N
 def test_a_game_without_conflicts_gives_an_empty_table(tmp_path: Path) -> None:
     (run,) = make_runs("fig-6.1c", seeds=1, densities=(6,))
     outcome = make_outcome(run)
-    outcome.records["conflicts"] = {name: [] for name in names("conflicts")[1:]}
+    outcome.records["conflicts"] = {name: [] for name in column_names("conflicts")[1:]}
     write(tmp_path, [run], lambda _: outcome)
     assert pq.read_table(tmp_path / "conflicts.parquet").equals(
         arrow_schema(TABLES["conflicts"]).empty_table()
