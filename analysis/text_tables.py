@@ -1,6 +1,6 @@
 """Text tables: tables of strings for terminals, Markdown and HTML.
 
-The numbers of a table are in the data frame that it was made from: `frame.to_csv(index=False)`.
+To export the numbers of a table, write the data frame it was made from: `frame.to_csv(index=False)`.
 """
 
 import re
@@ -11,7 +11,7 @@ from typing import Final
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-NONE: Final = "–"
+MISSING: Final = "–"
 """Text of a missing number."""
 
 TEMPLATES: Final = Environment(
@@ -22,7 +22,7 @@ TEMPLATES: Final = Environment(
     lstrip_blocks=True,
 )
 
-# A number or the text of a missing one; an interval or a unit may follow.
+# A number or `MISSING`; an interval or a unit may follow.
 _NUMBER: Final = re.compile(r"^(–$|[+−-]?[\d.]+(\s|$))")
 
 
@@ -40,7 +40,7 @@ class TextTable:
     marks: Mapping[str, str] = field(default_factory=dict)
 
     def classes(self) -> list[str]:
-        """Return the HTML class of each column: ``number`` if all its cells are numbers, else empty."""
+        """Return the HTML class of each column: ``number`` if all its cells are numbers, else ``""``."""
         if not self.rows:
             return [""] * len(self.header)
         columns = zip(*self.rows, strict=True)
@@ -49,7 +49,7 @@ class TextTable:
     def to_markdown(self) -> str:
         """Return the table in Markdown; numbers are aligned right, and the caption is a paragraph below."""
         rule = ["--:" if number else "---" for number in self.classes()]
-        lines = [_markdown(self.header), f"|{'|'.join(rule)}|", *map(_markdown, self.rows)]
+        lines = [_markdown_row(self.header), f"|{'|'.join(rule)}|", *map(_markdown_row, self.rows)]
         if self.caption:
             lines += ["", " ".join(self.caption.splitlines())]
         return "\n".join(lines) + "\n"
@@ -60,22 +60,22 @@ class TextTable:
 
 
 def number(value: float, form: str) -> str:
-    """Return a number in a format such as ``.1f``, a dash for NaN."""
-    return NONE if isnan(value) else format(value, form)
+    """Format a number with a format such as ``.1f``; NaN becomes `MISSING`."""
+    return MISSING if isnan(value) else format(value, form)
 
 
 def with_interval(value: float, low: float, high: float, form: str) -> str:
-    """Return a number and its interval; an interval of NaN is left out."""
+    """Format a number and its interval; an interval of NaN is omitted."""
     interval = "" if isnan(value) or isnan(low) else f" ({low:{form}} … {high:{form}})"
     return number(value, form) + interval
 
 
 def span(low: int, high: int) -> str:
-    """Return a range of integers: ``3 to 20``, or ``20`` if both ends are equal."""
+    """Format a range of integers: ``3 to 20``, or ``20`` if both ends are equal."""
     return str(low) if low == high else f"{low} to {high}"
 
 
-def _markdown(cells: Sequence[str]) -> str:
-    # A bar would end the cell, a line break the table.
+def _markdown_row(cells: Sequence[str]) -> str:
+    # An unescaped bar ends the cell; a line break ends the table.
     escaped = [cell.replace("|", "\\|").replace("\n", " ") for cell in cells]
     return f"| {' | '.join(escaped)} |"

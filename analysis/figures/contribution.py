@@ -11,23 +11,23 @@ from kswarms.analysis.figures.style import LineStyle, heading, legend_below, new
 from kswarms.analysis.measures.contribution import (
     MEASURES,
     mean_contributions,
-    measures_of,
-    of_question,
+    measures_with_values,
     rank_correlations,
+    select_contributions,
 )
 from kswarms.analysis.measures.quantities import short_policy
 from kswarms.analysis.results.records import read_contributions
-from kswarms.analysis.statistics.intervals import fewest_seeds
+from kswarms.analysis.statistics.intervals import min_seeds
 from kswarms.analysis.tables.contribution import estimate_text
 
 
 def contribution_figure(rows: pd.DataFrame, title: str = "") -> Figure:
     """Draw the true contribution of each robot over the reward that it computed.
 
-    `rows` come from `of_question`. A panel for each of `MEASURES` shows the mean and interval of each robot;
-    light points are single games.
+    `rows` come from `select_contributions`. Each of `MEASURES` has a panel. Markers with bars are
+    the mean and interval of each robot; light points are single games.
     """
-    first, seeds, measures = rows.iloc[0], rows["seed"].nunique(), measures_of(rows)
+    first, seeds, measures = rows.iloc[0], rows["seed"].nunique(), measures_with_values(rows)
     absent = "from learning and game" if first["absent_from"] == "learning" else "from the measured game"
     condition = f"{first['condition']}, " if first["condition"] else ""
     name = f"{heading(first['scenario'], title)}, {condition}N = {first['n']}, robots absent {absent}"
@@ -39,10 +39,11 @@ def contribution_figure(rows: pd.DataFrame, title: str = "") -> Figure:
             for swarm in sorted(set(rows["swarm"])):
                 means = robots[(robots["swarm"] == swarm) & (robots["robot"] >= 0)]
                 _draw_swarm(axes, rows[rows["swarm"] == swarm], means, measure, swarm_style(swarm))
-            axes.set_title(_title(correlations[correlations["measure"] == measure]), fontsize="small")
-            change = f"change of its swarm's SUD by the robot ({MEASURES[measure]})"
+            text = _correlation_text(correlations[correlations["measure"] == measure])
+            axes.set_title(text, fontsize="small")
+            change = f"contribution of the robot to the SUD of its swarm ({MEASURES[measure]})"
             axes.set(xlabel="reward that the robot computes in a game (s)", ylabel=change)
-        bars = ", bars: their 95 % intervals" if seeds >= fewest_seeds() else ""
+        bars = ", bars: their 95 % intervals" if seeds >= min_seeds() else ""
         note = f"means of {seeds} seeds{bars}, points: single games"
         legend_below(figure, note if seeds > 1 else "one seed")
     return figure
@@ -65,8 +66,8 @@ def _draw_swarm(axes: Axes, games: pd.DataFrame, means: pd.DataFrame, measure: s
     )
 
 
-def _title(correlations: pd.DataFrame) -> str:
-    """Return a line for each swarm."""
+def _correlation_text(correlations: pd.DataFrame) -> str:
+    """Return the rank correlations as text, one line per swarm."""
     return "\n".join(
         f"S{row['swarm']}: rank correlation of robots {estimate_text(row, 'robots')}, "
         f"in a game {estimate_text(row, 'games')}"
@@ -74,13 +75,13 @@ def _title(correlations: pd.DataFrame) -> str:
     )
 
 
-def write_contribution_figure(directory: Path, title: str = "", **question: object) -> Path:
+def write_contribution_figure(directory: Path, title: str = "", **selection: object) -> Path:
     """Write `figures/contribution-<id>.png` from `contribution.parquet` in a results directory.
 
-    `title` is the scenario's; `question` is as for `of_question`. `InputError` if the table cannot be read or
-    the figure cannot be written; then an existing file is unchanged.
+    `title` is the title of the scenario; `selection` is as for `select_contributions`. `InputError` if the
+    table cannot be read or the figure cannot be written; then an existing file is unchanged.
     """
-    rows = of_question(read_contributions(directory), **question)
+    rows = select_contributions(read_contributions(directory), **selection)
     path = directory / "figures" / f"contribution-{rows['scenario'].iloc[0]}.png"
     save(contribution_figure(rows, title), path)
     return path

@@ -1,4 +1,4 @@
-"""Figures of emerging policies: choices and Q over the time of learning, and final Q of each robot.
+"""Figures of emerging policies: choices and Q over the learning time, and final Q of each robot.
 
 Choices and Q come from the conflicts of one game: rows of `conflicts.parquet` or of a DataCollector's table
 (`model.datacollector.get_table_dataframe("conflicts")`). Final Q comes from rows of `robots.parquet`.
@@ -16,7 +16,7 @@ from kswarms.analysis.measures.emergence import BANDIT, arm_values, choices, pre
 
 
 def choices_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
-    """Draw the share of each action over the time of learning; thick lines are swarms, thin lines robots.
+    """Draw the share of each action over the learning time; thick lines are swarms, thin lines robots.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def choices_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
 
 
 def values_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
-    """Draw Q of each action over the time of learning; thick lines are means of swarms, thin lines robots.
+    """Draw Q of each action over the learning time; thick lines are means of swarms, thin lines robots.
 
     Parameters and errors are those of `choices_figure`.
     """
@@ -64,7 +64,7 @@ def _of_bandit(rows: pd.DataFrame, bandit: tuple[int, int]) -> pd.DataFrame:
 def _draw_over_time(
     axes: Axes, robots: pd.DataFrame, swarm: pd.DataFrame, quantity: str, actions: Sequence[str]
 ) -> None:
-    """Draw the curves of a bandit; each action has the same colour in all panels."""
+    """Draw the curves of a bandit; an action has the same colour in all panels."""
     for colour, action in zip(cycle(CONDITION_COLOURS), actions, strict=False):
         for _, of_robot in robots[robots["action"] == action].groupby("robot"):
             axes.plot(of_robot["time"], of_robot[quantity], color=colour, linewidth=0.6, alpha=0.35)
@@ -78,7 +78,7 @@ def _panels(
     draw: Callable[[Axes, tuple[int, int]], None],
     title: str,
     ylabel: str,
-    xlabel: str = "time of learning (s)",
+    xlabel: str = "learning time (s)",
     legend: str = "thick: swarm, thin: its robots",
 ) -> Figure:
     """Draw a panel for each pair of a learning swarm and an opponent."""
@@ -86,7 +86,7 @@ def _panels(
     with new_figure(title, width=max(7.0, 5.0 * len(bandits)), height=4.4) as figure:
         panels = figure.subplots(1, len(bandits), sharey=True, squeeze=False)[0]
         for axes, bandit in zip(panels, bandits, strict=True):
-            axes.set_title(_name(bandit))
+            axes.set_title(_bandit_name(bandit))
             draw(axes, bandit)
             axes.set(xlabel=xlabel, ylabel=ylabel)
             axes.label_outer()
@@ -94,9 +94,9 @@ def _panels(
     return figure
 
 
-def _name(bandit: tuple[int, int]) -> str:
+def _bandit_name(bandit: tuple[int, int]) -> str:
     swarm, opponent = bandit
-    return f"S{swarm} within itself" if swarm == opponent else f"S{swarm} against S{opponent}"
+    return f"within S{swarm}" if swarm == opponent else f"S{swarm} against S{opponent}"
 
 
 def preferences_figure(robots: pd.DataFrame, title: str = "") -> Figure:
@@ -124,14 +124,14 @@ def preferences_figure(robots: pd.DataFrame, title: str = "") -> Figure:
     def draw(axes: Axes, bandit: tuple[int, int]) -> None:
         of_bandit = _of_bandit(rows, bandit)
         best = of_bandit[of_bandit["learned"]].drop_duplicates(robot).sort_values(["action", "q"])
-        place = pd.Series(range(len(best)), index=pd.MultiIndex.from_frame(best[robot]))
+        column = pd.Series(range(len(best)), index=pd.MultiIndex.from_frame(best[robot]))
         for index, action in enumerate(actions):
             arm, style = of_bandit[of_bandit["action"] == action], condition_style(index)
-            across = place[pd.MultiIndex.from_frame(arm[robot])]
-            axes.scatter(across, arm["q"], color=style.colour, marker=style.marker, s=22, label=action)
+            x = column[pd.MultiIndex.from_frame(arm[robot])]
+            axes.scatter(x, arm["q"], color=style.colour, marker=style.marker, s=22, label=action)
         learned = best["action"].value_counts(normalize=True).sort_index()
         shares = ", ".join(f"{action} {share:.0%}" for action, share in learned.items())
-        axes.set(title=f"{_name(bandit)}; best: {shares}", xticks=[])
+        axes.set(title=f"{_bandit_name(bandit)}; best: {shares}", xticks=[])
 
     xlabel, legend = "robots, sorted by best action and its Q", "all arms of a robot are on one vertical line"
     return _panels(rows, draw, title, "Q at the end (reward per second)", xlabel, legend)

@@ -29,7 +29,7 @@ class EncodedFigure(NamedTuple):
 
 
 def encode(figure: Figure, kind: str) -> bytes:
-    """Return a figure in one of `FORMATS`; `InputError` for another format."""
+    """Encode a figure in one of `FORMATS`; `InputError` for another format."""
     if kind not in FORMATS:
         raise InputError("format", kind, f"must be one of {', '.join(FORMATS)}")
     content = BytesIO()
@@ -43,7 +43,7 @@ def encode(figure: Figure, kind: str) -> bytes:
 
 
 def encode_all(figure: Figure) -> EncodedFigure:
-    """Return a figure in all formats. This fixes the layout of the figure."""
+    """Encode a figure in all formats. The layout of the figure becomes fixed."""
     files = {}
     for kind in FORMATS:
         files[kind] = encode(figure, kind)

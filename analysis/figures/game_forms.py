@@ -65,18 +65,18 @@ def draw_extensive_form(tree: nx.DiGraph) -> Figure:
     for places in sets.values():
         for first, second in pairwise(places):
             axes.plot(*zip(first, second, strict=True), "--", color=colour, linewidth=1.2, zorder=2)
-    for x_of, player in enumerate((NATURE, OWN, MET)):
-        axes.annotate(_MOVES[player], (x_of, 0.9), ha="center", va="bottom", fontsize=10)
+    for column, player in enumerate((NATURE, OWN, MET)):
+        axes.annotate(_MOVES[player], (column, 0.9), ha="center", va="bottom", fontsize=10)
     axes.annotate("payoffs (own, met)", (3.0, 0.9), ha="left", va="bottom", fontsize=10)
     axes.set(xlim=(-0.45, 3.75), ylim=(min(height.values()) - 0.6, 1.7))
     return figure
 
 
 def draw_polymatrix(graph: nx.Graph) -> Figure:
-    """Draw the graph of the games between K swarms; nodes are swarms, loops are games within a swarm.
+    """Draw the graph of the games between K swarms, and the payoff matrix of each game below it.
 
-    Below the graph, each game is a matrix of payoffs (row, column); rows belong to the swarm with the lower
-    number.
+    Nodes are swarms; loops are games within a swarm. Payoffs are (row, column); rows belong to the swarm with
+    the lower number.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def _loop(x: float, y: float) -> tuple[list[float], list[float]]:
 
 
 def _draw_matrix(axes: Axes, form: NormalForm, title: str) -> None:
-    """Write a game as a matrix of payoffs."""
+    """Draw the payoff matrix of a game as monospaced text."""
     cells = [
         [_payoff_text(*pair) for pair in zip(*row, strict=True)]
         for row in zip(form.own.tolist(), form.met.tolist(), strict=True)

@@ -13,10 +13,10 @@ from matplotlib.figure import Figure
 
 from kswarms.analysis.colours import swarm_colour
 from kswarms.analysis.figures.style import CONDITION_COLOURS, legend_below, new_figure
-from kswarms.analysis.measures.networks import SMALLEST_JAM
+from kswarms.analysis.measures.networks import MIN_JAM_SIZE
 
 _WINDOW: Final = 15
-"""Number of moments in a moving mean of jams."""
+"""Number of samples in the moving mean of jams."""
 
 
 def network_figure(network: nx.Graph, title: str = "") -> Figure:
@@ -32,22 +32,22 @@ def network_figure(network: nx.Graph, title: str = "") -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        Left: width and darkness of an edge grow with the time that two robots were in conflict; edges within
-        a swarm are grey, edges between swarms black. Right: a matrix of the same times (s) on a logarithmic
-        scale; robots are sorted by swarm, and pairs that never met are grey.
+        Left: edges are wider and darker the longer two robots were in conflict; edges within a swarm are
+        grey, edges between swarms black. Right: a matrix of the same times (s) on a logarithmic scale. Robots
+        are sorted by swarm; pairs that never met are grey.
     """
     swarm = nx.get_node_attributes(network, "swarm")
-    order = sorted(network, key=lambda robot: (swarm[robot], robot))
-    times = nx.to_numpy_array(network, nodelist=order, weight="time")
+    robots = sorted(network, key=lambda robot: (swarm[robot], robot))
+    times = nx.to_numpy_array(network, nodelist=robots, weight="time")
     longest, shortest = times.max(), times[times > 0].min()
     with new_figure(title, width=11.0, height=5.6) as figure:
         circle, matrix = figure.subplots(1, 2)
-        places = nx.circular_layout(order)
+        positions = nx.circular_layout(robots)
         for kind, colour in (("intra", "0.55"), ("inter", "black")):
             edges = [(a, b, met["time"]) for a, b, met in network.edges(data=True) if met["kind"] == kind]
             nx.draw_networkx_edges(
                 network,
-                places,
+                positions,
                 edgelist=[(a, b) for a, b, _ in edges],
                 width=[4 * (time / longest) ** 0.5 for *_, time in edges],
                 alpha=[0.05 + 0.65 * time / longest for *_, time in edges],
@@ -55,10 +55,9 @@ def network_figure(network: nx.Graph, title: str = "") -> Figure:
                 ax=circle,
             )
             circle.plot([], [], color=colour, linewidth=3, label=f"{kind}-swarm meetings")
-        for name in sorted(set(swarm.values())):
-            x, y = zip(*(places[robot] for robot in order if swarm[robot] == name), strict=True)
-            colour = swarm_colour(name)
-            circle.scatter(x, y, s=120, color=colour, edgecolors="white", zorder=3, label=f"S{name}")
+        for k in sorted(set(swarm.values())):
+            x, y = zip(*(positions[robot] for robot in robots if swarm[robot] == k), strict=True)
+            circle.scatter(x, y, s=120, color=swarm_colour(k), edgecolors="white", zorder=3, label=f"S{k}")
         circle.set_axis_off()
         circle.set_aspect("equal")
         # Few pairs are in conflict for very long; a linear scale would show only them.
@@ -67,14 +66,14 @@ def network_figure(network: nx.Graph, title: str = "") -> Figure:
             cmap=colormaps["viridis"].with_extremes(bad="0.85"),
             norm=LogNorm(shortest, max(longest, 2 * shortest)),
         )
-        _label_swarms(matrix, [swarm[robot] for robot in order])
-        figure.colorbar(image, ax=matrix, label="time of the two in conflict with each other, T(a) (s)")
+        _label_swarms(matrix, [swarm[robot] for robot in robots])
+        figure.colorbar(image, ax=matrix, label="time of each pair in conflict, T(a) (s)")
         legend_below(figure)
     return figure
 
 
 def _label_swarms(axes: Axes, swarms: Sequence[int]) -> None:
-    """Label the swarms along both sides of a matrix that is sorted by swarm, and draw lines between them."""
+    """Label the swarms on both axes of a matrix sorted by swarm, and draw lines between them."""
     names = sorted(set(swarms))
     middles = [np.flatnonzero(np.array(swarms) == name).mean() for name in names]
     for set_ticks in (axes.set_xticks, axes.set_yticks):
@@ -99,7 +98,7 @@ def jams_figure(over_time: pd.DataFrame, title: str = "") -> Figure:
     time = over_time["time"]
     with new_figure(title, width=11.0, height=4.2) as figure:
         axes = figure.subplots()
-        labels = {"jammed": f"in jams of {SMALLEST_JAM} or more", "largest": "in the largest cluster"}
+        labels = {"jammed": f"in jams of {MIN_JAM_SIZE} or more", "largest": "in the largest cluster"}
         for (quantity, label), colour in zip(labels.items(), CONDITION_COLOURS, strict=False):
             axes.step(time, over_time[quantity], where="post", color=colour, linewidth=0.8, alpha=0.3)
             smooth = over_time[quantity].rolling(_WINDOW, center=True, min_periods=1).mean()
@@ -107,5 +106,5 @@ def jams_figure(over_time: pd.DataFrame, title: str = "") -> Figure:
         axes.set(xlabel="time (s)", ylabel="robots")
         axes.set_ylim(bottom=0)
         axes.margins(x=0)
-        legend_below(figure, f"thin: each moment, thick: moving mean of {_WINDOW} moments")
+        legend_below(figure, f"thin: each sample, thick: moving mean of {_WINDOW} samples")
     return figure

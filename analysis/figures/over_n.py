@@ -21,15 +21,15 @@ from kswarms.analysis.figures.style import (
     legend_below,
     new_figure,
     scale_from_zero,
-    seeds_legend,
+    seeds_legend_title,
 )
 from kswarms.analysis.measures.learned import named_curves
 from kswarms.analysis.measures.quantities import (
     TIME_SHARES,
-    of_scenario,
-    quantities,
+    add_time_shares,
+    scenario_rows,
+    shown_quantities,
     split_curves,
-    with_time_shares,
 )
 from kswarms.analysis.results.runs import Results, read_results
 from kswarms.analysis.results.sweeps import Sweep
@@ -45,7 +45,7 @@ def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "", detail: boo
     scenario : str
         Id of the scenario.
     title : str
-        Title of the scenario, which follows its id in the heading.
+        Title of the scenario; the heading is its id and this title.
     detail : bool
         Whether intervals and single seeds are drawn; the source shows means only.
 
@@ -59,23 +59,23 @@ def pucks_over_n(runs: pd.DataFrame, scenario: str, title: str = "", detail: boo
     InputError
         `runs` has no row of the scenario.
     """
-    rows = of_scenario(runs, scenario)
+    rows = scenario_rows(runs, scenario)
     with new_figure(heading(scenario, title)) as figure:
         axes = figure.subplots()
         draw_curves(axes, split_curves(rows), "pucks", detail)
         axes.set_ylabel("pucks deposited by the swarm")
         scale_from_zero(axes, rows["pucks"])
-        legend_below(figure, seeds_legend(rows, detail))
+        legend_below(figure, seeds_legend_title(rows, detail))
     return figure
 
 
 def time_shares(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool = True) -> Figure:
     """Draw the share of time in conflict, T(a) / (T(a) + T(p)), over the number of robots (Fig. 6.3).
 
-    Parameters and errors are those of `pucks_over_n`. Three panels show all conflicts, conflicts with other
-    swarms, and conflicts within the swarm.
+    Three panels show all conflicts, conflicts with other swarms, and conflicts within the swarm. Parameters
+    and errors are those of `pucks_over_n`.
     """
-    rows = with_time_shares(of_scenario(runs, scenario))
+    rows = add_time_shares(scenario_rows(runs, scenario))
     with new_figure(heading(scenario, title), width=11.0) as figure:
         panels: Sequence[Axes] = figure.subplots(1, len(TIME_SHARES), sharey=True)
         for axes, kind in zip(panels, TIME_SHARES, strict=True):
@@ -84,7 +84,7 @@ def time_shares(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool
             axes.set_ylabel("share of time, T(a) / (T(a) + T(p))")
             axes.label_outer()
         scale_from_zero(panels[0], rows["total"])
-        legend_below(figure, seeds_legend(rows, detail))
+        legend_below(figure, seeds_legend_title(rows, detail))
     return figure
 
 
@@ -93,9 +93,9 @@ def sud_over_n(
 ) -> Figure:
     """Draw the Swarm Utility Difference (Eq. 3.7) of one swarm over the number of robots.
 
-    Parameters and errors are those of `pucks_over_n`. The swarm is 1 to K; the source shows S2.
+    Parameters and errors are those of `pucks_over_n`. `swarm` is 1 to K; the source shows S2.
     """
-    rows = of_scenario(runs, scenario)
+    rows = scenario_rows(runs, scenario)
     swarms = sorted(set(rows["swarm"]))
     if swarm not in swarms:
         raise InputError("swarm", swarm, f"must be one of {', '.join(map(str, swarms))} in {scenario}")
@@ -105,7 +105,7 @@ def sud_over_n(
         axes.axhline(0, color="0.4", linewidth=1)
         draw_curves(axes, split_curves(rows), "sud", detail)
         axes.set_ylabel(f"SUD of S{swarm} (pucks)")
-        legend_below(figure, seeds_legend(rows, detail))
+        legend_below(figure, seeds_legend_title(rows, detail))
     return figure
 
 
@@ -119,13 +119,13 @@ def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[st
     title : str
         Heading.
     conditions : sequence of str
-        Conditions in the order of another figure of the scenario, so that both have the same colours.
+        Order of the conditions in another figure of the scenario, to draw both with the same colours.
 
     Returns
     -------
     matplotlib.figure.Figure
-        A curve with its 95 % interval for each scenario, condition, learning swarm and opponent. Published
-        numbers are crosses of the same colour on a dotted line.
+        A curve with its 95 % interval for each scenario, condition, learning swarm and opponent. Crosses of
+        the same colour on a dotted line are published numbers.
     """
     with new_figure(title) as figure:
         axes = figure.subplots()
@@ -141,7 +141,8 @@ def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[st
                 published = LineStyle(style.colour, ":", "x")
                 draw_line(axes, curve["n"], curve["published"], published, f"{name}, published")
         learned = set(cells["learned"])
-        action = "to attack" if learned == {"attack"} else "flight within" if len(learned) == 1 else "it"
+        names = {("attack",): "to attack", ("flight within",): "flight within"}
+        action = names.get(tuple(learned), "the action")
         axes.set(xlabel="number of robots in all, N", ylabel=f"robots that learned {action} (%)")
         axes.set(xticks=sorted(set(cells["n"])), ylim=(-3, 103))
         legend_below(figure, "learned action; band: 95 % interval of the measured share")
@@ -149,11 +150,11 @@ def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[st
 
 
 def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool = True) -> Figure:
-    """Draw the quantity that the source shows of a scenario: pucks, SUD of S2 or shares of time.
+    """Draw the quantity that the source shows for a scenario: pucks, SUD of S2 or shares of time.
 
     Parameters and errors are those of `pucks_over_n`.
     """
-    draw = {("sud",): sud_over_n, TIME_SHARES: time_shares}.get(quantities(scenario), pucks_over_n)
+    draw = {("sud",): sud_over_n, TIME_SHARES: time_shares}.get(shown_quantities(scenario), pucks_over_n)
     return draw(runs, scenario, title, detail)
 
 

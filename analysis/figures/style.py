@@ -1,8 +1,8 @@
 """Style of the figures over the number of robots: curves, line styles, headings and legends.
 
-A curve is the mean over the seeds. In detail it has a band, the 95 % interval of that mean, and light points,
-the single seeds. Line styles are those of the source: S1 green, dashed, open circles; S2 red, dashed, filled
-circles; S3 blue, dash-dotted, triangles.
+A curve is the mean over the seeds. With `detail`, a band shows the 95 % interval of the mean, and light
+points show the single seeds. Line styles are those of the source: S1 green, dashed, open circles; S2 red,
+dashed, filled circles; S3 blue, dash-dotted, triangles.
 """
 
 from collections.abc import Iterator, Sequence
@@ -20,24 +20,24 @@ from matplotlib.figure import Figure
 
 from kswarms.analysis.colours import swarm_colour
 from kswarms.analysis.measures.quantities import Curve
-from kswarms.analysis.statistics.intervals import fewest_seeds
-from kswarms.analysis.statistics.means import with_intervals
+from kswarms.analysis.statistics.intervals import min_seeds
+from kswarms.analysis.statistics.means import mean_by_group
 from kswarms.analysis.text_tables import span
 
 CONDITION_COLOURS: Final = tuple(sns.color_palette("colorblind").as_hex())
 _CONDITION_MARKERS: Final = "os^DvPX"
 
 _MAX_TICKS: Final = 16
-"""With more densities than this, matplotlib chooses the ticks."""
+"""Maximum number of ticks; with more densities, matplotlib chooses the ticks."""
 _MAX_GAP: Final = 4
-"""Maximum gap between densities (robots); points of single seeds are shifted by at most a quarter of it."""
+"""Maximum gap between densities (robots); single seeds are shifted by at most a quarter of the gap."""
 _LEGEND_LINE, _LETTER = 0.75, 0.08
 """Width of the line and of a letter in a legend (inches)."""
 
 
 @dataclass(frozen=True)
 class LineStyle:
-    """How a curve is drawn, in matplotlib's terms."""
+    """Colour, line style and marker of a curve, as matplotlib names them."""
 
     colour: str
     line: str
@@ -46,6 +46,7 @@ class LineStyle:
 
 
 _SWARM_LINES: Final = (("--", "o", False), ("--", "o"), ("-.", "^"), (":", "s"), ("-", "D"), ("-.", "v"))
+"""Line style, marker and whether it is filled (default: True), by swarm."""
 
 
 def swarm_style(swarm: int) -> LineStyle:
@@ -54,9 +55,10 @@ def swarm_style(swarm: int) -> LineStyle:
 
 
 def condition_style(index: int, swarm: int | None = None) -> LineStyle:
-    """Return the line style of a condition, counted from 0: its colour, with the line and marker of a swarm.
+    """Return the line style of a condition, counted from 0.
 
-    Without a swarm, the line is solid and the marker differs by condition.
+    With a swarm, line and marker are those of the swarm. Otherwise the line is solid, and the marker differs
+    by condition.
     """
     colour = CONDITION_COLOURS[index % len(CONDITION_COLOURS)]
     if swarm is not None:
@@ -73,15 +75,15 @@ def curve_style(curve: Curve) -> LineStyle:
 
 
 def draw_curves(axes: Axes, curves: Sequence[Curve], quantity: str, detail: bool = True) -> None:
-    """Draw the mean of a quantity over `n`, in detail also its interval and the single seeds."""
+    """Draw the mean of a quantity over `n`; with `detail`, also its interval and the single seeds."""
     densities = sorted({n for curve in curves for n in curve.rows["n"]})
     gap = min([_MAX_GAP, *(right - left for left, right in pairwise(densities))])
     for index, curve in enumerate(curves):
         style, rows = curve_style(curve), curve.rows
-        # Curves are shifted, so that the seeds of one do not hide those of another.
+        # Shift the seeds of each curve, so that they do not hide those of another.
         shift = gap * 0.5 * ((index + 0.5) / len(curves) - 0.5)
         seeds = rows["seed"].nunique()
-        points = with_intervals(rows, ["n"], quantity)
+        points = mean_by_group(rows, ["n"], quantity)
         if seeds > 1 and detail:
             # Many seeds share a value: the more seeds, the lighter the points.
             alpha = min(0.25, max(0.05, 5 / seeds))
@@ -96,11 +98,11 @@ def draw_curves(axes: Axes, curves: Sequence[Curve], quantity: str, detail: bool
     axes.set_xlabel("number of robots in all, N")
 
 
-def draw_line(axes: Axes, across: pd.Series, up: pd.Series, style: LineStyle, label: str) -> None:
+def draw_line(axes: Axes, x: pd.Series, y: pd.Series, style: LineStyle, label: str) -> None:
     """Draw a curve with its markers."""
     axes.plot(
-        across.to_numpy(),
-        up.to_numpy(),
+        x.to_numpy(),
+        y.to_numpy(),
         label=label,
         color=style.colour,
         linestyle=style.line,
@@ -112,7 +114,7 @@ def draw_line(axes: Axes, across: pd.Series, up: pd.Series, style: LineStyle, la
 
 
 def scale_from_zero(axes: Axes, values: pd.Series) -> None:
-    """Start the vertical axis at 0, with room for whole markers at either end."""
+    """Start the vertical axis at 0, with space for the markers at both ends."""
     top = values.max() or 1.0
     axes.set_ylim(-0.02 * top, 1.06 * top)
 
@@ -124,7 +126,7 @@ def heading(scenario: str, title: str) -> str:
 
 @contextmanager
 def new_figure(title: str, width: float = 7.0, height: float = 4.9) -> Iterator[Figure]:
-    """Yield a new figure with a heading and a size in inches, in the package's style."""
+    """Yield a new figure with a heading, in the style of the package; width and height are in inches."""
     with (
         sns.axes_style("whitegrid", rc={"grid.color": "0.9"}),
         sns.plotting_context("notebook", font_scale=0.9),
@@ -136,7 +138,7 @@ def new_figure(title: str, width: float = 7.0, height: float = 4.9) -> Iterator[
 
 
 def legend_below(figure: Figure, title: str = "") -> None:
-    """Put one legend of all axes below them; entries with the same label are shown once."""
+    """Place one legend for all axes below them; entries with the same label appear once."""
     entries: dict[str, Any] = {}
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
@@ -153,8 +155,8 @@ def legend_below(figure: Figure, title: str = "") -> None:
     )
 
 
-def seeds_legend(rows: pd.DataFrame, detail: bool) -> str:
-    """Return the title of a legend: the number of seeds, in detail also the meaning of band and points."""
+def seeds_legend_title(rows: pd.DataFrame, detail: bool) -> str:
+    """Return the legend title: number of seeds; with `detail`, also the meaning of band and points."""
     counts = rows.groupby(["condition", "n"])["seed"].nunique()
     low, high = counts.min(), counts.max()
     if high == 1:
@@ -162,5 +164,5 @@ def seeds_legend(rows: pd.DataFrame, detail: bool) -> str:
     mean = f"mean of {span(low, high)} seeds"
     if not detail:
         return mean
-    band = ", band: its 95 % interval" if high >= fewest_seeds() else ""
+    band = ", band: its 95 % interval" if high >= min_seeds() else ""
     return f"{mean}{band}, points: single seeds"

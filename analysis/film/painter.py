@@ -16,16 +16,16 @@ Floats = NDArray[np.float64]
 _IN_ACTION: Final = "#ffc107"
 _WALL, _STATION, _PUCK, _WHITE = "#333333", "#2b2b2b", "#111111", "#ffffff"
 _TINT: Final = 0.22
-"""Share of the swarm's colour in its base; the rest is white."""
+"""Share of the swarm's colour in the colour of its base; the rest is white."""
 _OVERSAMPLING: Final = 3
-"""Images are painted larger by this factor in each direction, and then reduced."""
+"""Images are painted larger by this factor in each direction, then reduced."""
 _MARGIN: Final = 0.03
 """Width of the margin around the arena, relative to half its side."""
 _HEADER: Final = 0.06
 """Height of the line above the arena, relative to the width of the image."""
 
 
-class Places(Protocol):
+class ArenaLayout(Protocol):
     """Arena to draw, such as a `kswarms.model.description.arena.Arena`; lengths in m."""
 
     @property
@@ -50,20 +50,20 @@ class Places(Protocol):
 
 
 class ArenaPainter:
-    """Painter of one arena.
+    """Paint images of one arena.
 
-    `robot_radius` is in m. Images have `width` × `height` pixels; both are even, as video formats require (an
-    odd width is rounded down).
+    `robot_radius` is in m. Images have `width` × `height` pixels. Both are even, as video formats require; an
+    odd width is rounded down.
     """
 
-    def __init__(self, places: Places, robot_radius: float, width: int) -> None:
+    def __init__(self, arena: ArenaLayout, robot_radius: float, width: int) -> None:
         self.width = width - width % 2
         header = int(self.width * _HEADER)
         self.height = self.width + header + header % 2
         self._radius = robot_radius
-        self._scale = _OVERSAMPLING * self.width / (2 * places.half * (1 + _MARGIN))
+        self._scale = _OVERSAMPLING * self.width / (2 * arena.half * (1 + _MARGIN))
         self._font = ImageFont.load_default(0.7 * header)
-        self._background = self._paint_background(places)
+        self._background = self._paint_background(arena)
 
     def paint(
         self,
@@ -75,7 +75,7 @@ class ArenaPainter:
         in_action: NDArray[np.bool_],
         carrying: NDArray[np.bool_],
     ) -> Image.Image:
-        """Return an image of an instant.
+        """Return an image of one moment of a game.
 
         The title and the pucks of each swarm are above the arena. Robots in state A have a yellow ring;
         robots with a puck have a black disc on white. For n robots, `positions` (m) has shape (n, 2);
@@ -85,9 +85,9 @@ class ArenaPainter:
         pen = ImageDraw.Draw(image)
         radius = self._radius
         robots = zip(positions, heading, swarm, in_action, carrying, strict=True)
-        for (x, y), angle, own, acts, carries in robots:
+        for (x, y), angle, index, acts, carries in robots:
             body = self._box(x, y, 0.97 * radius)
-            pen.ellipse(body, fill=swarm_colour(own + 1))
+            pen.ellipse(body, fill=swarm_colour(index + 1))
             if acts:
                 pen.ellipse(body, outline=_IN_ACTION, width=max(1, round(0.2 * radius * self._scale)))
             dx, dy = math.cos(angle), math.sin(angle)
@@ -111,19 +111,19 @@ class ArenaPainter:
             pen.text((right, middle), text, fill=swarm_colour(swarm), font=self._font, anchor="rm")
             right -= pen.textlength(f"{text}   ", font=self._font)
 
-    def _paint_background(self, places: Places) -> Image.Image:
+    def _paint_background(self, arena: ArenaLayout) -> Image.Image:
         side = _OVERSAMPLING * self.width
         image = Image.new("RGB", (side, side), _WHITE)
         pen = ImageDraw.Draw(image)
-        wall = 0.02 * places.half
-        outside = places.half + wall
+        wall = 0.02 * arena.half
+        outside = arena.half + wall
         pen.rectangle(self._box(0.0, 0.0, outside), outline=_WALL, width=round(wall * self._scale))
-        for x, y in places.stations:
-            pen.ellipse(self._box(x, y, places.station_radius), fill=_STATION)
+        for x, y in arena.stations:
+            pen.ellipse(self._box(x, y, arena.station_radius), fill=_STATION)
         font = ImageFont.load_default(0.1 * self._scale)
-        for swarm, (x, y) in enumerate(places.bases, 1):
+        for swarm, (x, y) in enumerate(arena.bases, 1):
             colour = swarm_colour(swarm)
-            pen.ellipse(self._box(x, y, places.base_radius), fill=_blend(_WHITE, colour, _TINT))
+            pen.ellipse(self._box(x, y, arena.base_radius), fill=_blend(_WHITE, colour, _TINT))
             pen.text(self._pixel(x, y), f"S{swarm}", fill=colour, font=font, anchor="mm")
         return image
 
@@ -138,15 +138,15 @@ class ArenaPainter:
 
 
 def _blend(one: str, other: str, share: float) -> tuple[int, ...]:
-    """Return a mixture of two colours with this share of `other`."""
+    """Return a mixture of two colours; `share` is the share of `other`."""
     pairs = zip(ImageColor.getrgb(one), ImageColor.getrgb(other), strict=True)
     return tuple(round((1 - share) * a + share * b) for a, b in pairs)
 
 
 def palette() -> Image.Image:
-    """Return an image with a palette of all colours, and of their mixtures at smooth edges.
+    """Return a palette image with all colours and the mixtures at anti-aliased edges.
 
-    A palette from the first image of a film would lack the colours that appear later.
+    A palette of the first image of a film would lack colours that appear later.
     """
     plain = (_WHITE, _STATION, _IN_ACTION, *SWARM_COLOURS)
     colours = [_blend(a, b, share) for a, b in combinations(plain, 2) for share in (0.0, 0.25, 0.5, 0.75)]

@@ -1,10 +1,10 @@
-"""Findings: statements about outcomes that results decide (section 3.4 of the experiments)."""
+"""Findings: statements about outcomes, and their verdicts by results (section 3.4 of the experiments)."""
 
 from collections.abc import Iterable
 from importlib.resources import files
 from typing import Final
 
-from kswarms.analysis.findings.finding import Finding, parse, read_findings
+from kswarms.analysis.findings.finding import Finding, parse_findings, read_findings
 from kswarms.analysis.findings.judging import judge
 from kswarms.analysis.findings.verdicts import FAILS, HOLDS, NO_DATA, UNDECIDED, Verdict
 from kswarms.analysis.results.runs import Results
@@ -22,10 +22,11 @@ __all__ = [
     "read_findings",
 ]
 
-FINDINGS: Final = parse(files(__name__).joinpath("thesis.toml").read_text(encoding="utf-8"), "thesis.toml")
-"""Findings of the thesis, as far as it states its outcomes."""
+_THESIS: Final = files(__name__).joinpath("thesis.toml")
+FINDINGS: Final = parse_findings(_THESIS.read_text(encoding="utf-8"), "thesis.toml")
+"""Findings of the thesis."""
 
 
 def judge_all(results: Results, findings: Iterable[Finding] = FINDINGS) -> list[Verdict]:
-    """Judge findings in their order, as `judge` does."""
+    """Judge findings in order, with `judge`."""
     return [judge(finding, results) for finding in findings]

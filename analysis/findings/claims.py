@@ -1,4 +1,4 @@
-"""Claims as data: statements about quantities that results can decide."""
+"""Claims: testable statements about quantities, as data."""
 
 from typing import Literal, Self
 
@@ -10,12 +10,12 @@ from kswarms.analysis.findings.quantity import LEARNED, Quantity
 
 
 class _OverDensities(FrozenModel):
-    """A claim about some numbers of robots.
+    """A claim about quantities at some densities.
 
     Attributes
     ----------
     densities : tuple of int
-        Numbers of robots; empty for all that the quantities have in common.
+        Numbers of robots, ascending; empty for all densities that the quantities have in common.
     """
 
     densities: tuple[int, ...] = ()
@@ -42,12 +42,13 @@ class Compare(_OverDensities):
     left, right : Quantity or float
         The two sides; a number has the unit of `left`.
     relation : str
-        ``>``: left − right is above the margin; ``>=``: left − right is not below −margin; ``<`` and ``<=``:
-        the reverse; ``within``: the difference is at most the margin in either direction.
+        With d = left − right: ``>`` is d > margin, ``>=`` is d ≥ −margin, ``<`` is d < −margin, ``<=`` is
+        d ≤ margin, and ``within`` is −margin ≤ d ≤ margin.
     over : str
-        ``each N``: the relation holds at every density; ``mean over N``, ``sum over N``: it holds for these.
+        ``each N``: the relation holds at every density. ``mean over N`` and ``sum over N``: it holds for the
+        mean or the sum over the densities.
     margin : float
-        In the unit of the quantities, ≥ 0.
+        Margin in the unit of the quantities, ≥ 0.
     """
 
     kind: Literal["compare"] = "compare"
@@ -61,7 +62,7 @@ class Compare(_OverDensities):
     def _check_units(self) -> Self:
         unit = self.left.unit
         if isinstance(self.right, Quantity) and self.right.unit != unit:
-            raise InputError("right.measure", self.right.measure, f"must be in {unit}, as the left is")
+            raise InputError("right.measure", self.right.measure, f"must have the unit of left, {unit}")
         return self
 
 
@@ -71,9 +72,9 @@ class Overtake(_OverDensities):
     Attributes
     ----------
     ahead, behind : Quantity
-        The quantity that is ahead at many robots, and the other one.
+        The quantity that is larger at many robots, and the other quantity.
     between : tuple of int
-        Two densities: `ahead` is behind up to the first and ahead from the second.
+        Two densities; the last crossing is between them.
     """
 
     kind: Literal["overtake"] = "overtake"
@@ -87,7 +88,7 @@ class Overtake(_OverDensities):
             raise InputError("between", list(self.between), "must ascend")
         unit = self.ahead.unit
         if self.behind.unit != unit:
-            raise InputError("behind.measure", self.behind.measure, f"must be in {unit}, as ahead is")
+            raise InputError("behind.measure", self.behind.measure, f"must have the unit of ahead, {unit}")
         return self
 
 
@@ -107,7 +108,7 @@ class Trend(_OverDensities):
 
 
 class Share(_OverDensities):
-    """More than `above` percent of the robots of a swarm, over all games, learned an action."""
+    """More than `above` percent of a swarm's robots in all games learned an action."""
 
     kind: Literal["share above"] = "share above"
     quantity: Quantity
@@ -127,9 +128,9 @@ class Agreement(_OverDensities):
     Attributes
     ----------
     cells : tuple of Quantity
-        Columns of Tables 6.1 and 6.2 (`published.learned_percentages`), a cell at each density.
+        Columns of Tables 6.1 and 6.2 (`published.learned_percentages`); each has a cell for each density.
     margin : float
-        Bound of the mean absolute error of the cells (percentage points).
+        Maximum mean absolute error of the cells (percentage points).
     """
 
     kind: Literal["agree with the published table"] = "agree with the published table"

@@ -17,11 +17,11 @@ _COUNTS = ["pucks", "conflicts_intra", "conflicts_inter", "size"]
 
 
 class NoDataError(Exception):
-    """Results lack the games of a claim; the message says which."""
+    """Results lack games that a claim needs; the message names them."""
 
 
-class Data:
-    """Samples of the quantities of a claim, the densities at which it can be judged, and notes on these."""
+class ClaimData:
+    """Samples of the quantities of a claim, the common densities, and notes on the densities."""
 
     def __init__(self, claim: Claim, results: Results) -> None:
         self.results = results
@@ -34,12 +34,17 @@ class Data:
         played = sorted(int(n) for n in common)
         self.densities = [n for n in claim.densities or played if n in played]
         if not self.densities:
-            raise NoDataError(f"no runs at {listed(claim.densities) if claim.densities else 'the same N'}")
+            raise NoDataError(
+                f"no runs at {format_densities(claim.densities) if claim.densities else 'the same N'}"
+            )
         absent = [n for n in claim.densities if n not in played]
-        self.notes = [listed(self.densities), f"without {listed(absent)}" if absent else ""]
+        self.notes = [
+            format_densities(self.densities),
+            f"without {format_densities(absent)}" if absent else "",
+        ]
 
     def at(self, densities: Sequence[int]) -> list[pd.DataFrame]:
-        """Return the tables at some densities, with the seeds that all tables have at all of these."""
+        """Return the tables at some densities, with the seeds that all tables have at these densities."""
         cut = [table[list(densities)].dropna() for table in self.tables]
         seeds = cut[0].index
         for table in cut[1:]:
@@ -47,61 +52,61 @@ class Data:
         return [table.loc[seeds] for table in cut]
 
     def complete(self) -> list[pd.DataFrame]:
-        """Return the tables at all densities, with the seeds that were played at each."""
+        """Return the tables at all densities, with the seeds that all tables have at each density."""
         tables = self.at(self.densities)
         if tables[0].empty:
-            raise NoDataError(f"no seed at all of {listed(self.densities)}")
+            raise NoDataError(f"no seed with all of {format_densities(self.densities)}")
         return tables
 
 
 def sample(results: Results, quantity: Quantity) -> pd.DataFrame:
-    """Return a quantity by seed (rows) and N (columns), ascending, float64 in its unit.
+    """Return a quantity by seed (rows) and N (columns), ascending, as float64 in its unit.
 
-    NaN where a density was not played with a seed; empty without any value. It is an error if a game has
-    several values: rows occur twice, or there are several opponents and none is given.
+    Missing games are NaN; without any games, the table is empty. `InputError` if a game has several values,
+    because rows are duplicated, or because there are several opponents and none is given.
     """
-    values = _learned if quantity.measure in LEARNED else _measured
+    values = _learned_measure if quantity.measure in LEARNED else _run_measure
     return _by_seed(values(results, quantity))
 
 
 def sizes(results: Results, quantity: Quantity) -> pd.DataFrame:
     """Return the number of robots of a quantity, by seed and N."""
-    return _by_seed(_summed(results, quantity)["size"])
+    return _by_seed(_sum_swarms(results, quantity)["size"])
 
 
 def difference(tables: Sequence[pd.DataFrame]) -> Values:
-    """Return the first table − the second, or the first alone; shape (seeds, densities)."""
+    """Return the first table − the second, or the only table; shape (seeds, densities)."""
     left, *right = (table.to_numpy(dtype=np.float64) for table in tables)
     return left - right[0] if right else left
 
 
-def listed(densities: Iterable[int]) -> str:
-    """Return densities as in a note."""
+def format_densities(densities: Iterable[int]) -> str:
+    """Format densities for a note."""
     return f"N = {', '.join(map(str, densities))}"
 
 
 def _by_seed(values: pd.Series) -> pd.DataFrame:
-    """Turn a series over (n, seed) into a table of seeds by densities."""
+    """Return a series over (n, seed) as a table of seeds (rows) and densities (columns)."""
     return values.unstack("n").sort_index().sort_index(axis=1).astype(np.float64)
 
 
-def _of_curve(rows: pd.DataFrame, quantity: Quantity) -> pd.DataFrame:
+def _select_curve(rows: pd.DataFrame, quantity: Quantity) -> pd.DataFrame:
     mask = (rows["scenario"] == quantity.scenario) & (rows["condition"] == quantity.condition)
     if quantity.swarm is not None:
         mask &= rows["swarm"] == quantity.swarm
     return rows[mask]
 
 
-def _summed(results: Results, quantity: Quantity) -> pd.DataFrame:
-    """Return sums over the swarms of the quantity, by (n, seed)."""
-    rows = _of_curve(results.runs, quantity)
+def _sum_swarms(results: Results, quantity: Quantity) -> pd.DataFrame:
+    """Return the sums over the swarms of a quantity, by (n, seed)."""
+    rows = _select_curve(results.runs, quantity)
     if rows.duplicated(["n", "seed", "swarm"]).any():
         raise InputError("runs", quantity.scenario, "must have one row for each condition, N, seed and swarm")
     return rows.groupby(["n", "seed"])[[*_TIMES, *_COUNTS, "sud", "duration"]].sum()
 
 
-def _measured(results: Results, quantity: Quantity) -> pd.Series:
-    summed = _summed(results, quantity)
+def _run_measure(results: Results, quantity: Quantity) -> pd.Series:
+    summed = _sum_swarms(results, quantity)
     if not quantity.measure.startswith("time_"):
         return summed[quantity.measure]
     in_conflict = summed["t_a_intra"] + summed["t_a_inter"]
@@ -113,11 +118,11 @@ def _measured(results: Results, quantity: Quantity) -> pd.Series:
     return 100 * share_of_time(parts[quantity.measure], in_conflict, summed["t_p"])
 
 
-def _learned(results: Results, quantity: Quantity) -> pd.Series:
+def _learned_measure(results: Results, quantity: Quantity) -> pd.Series:
     if results.policies is None:
         return pd.Series(dtype=np.float64, index=pd.MultiIndex.from_arrays([[], []], names=["n", "seed"]))
-    # The row of each action has the share of attack.
-    rows = _of_curve(results.policies, quantity).drop_duplicates(["n", "seed", "opponent"])
+    # `attack_share` is repeated in the row of each action.
+    rows = _select_curve(results.policies, quantity).drop_duplicates(["n", "seed", "opponent"])
     within = quantity.measure == "learned_flight_within"
     rows = rows[(rows["opponent"] == rows["swarm"]) == within]
     if quantity.opponent is not None:

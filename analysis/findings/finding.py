@@ -1,4 +1,4 @@
-"""Findings as data: a statement and its claim, and lists of them in TOML."""
+"""Findings as data, and reading findings from TOML."""
 
 import tomllib
 from pathlib import Path
@@ -13,18 +13,18 @@ from kswarms.analysis.statistics.intervals import CONFIDENCE
 
 
 class Finding(FrozenModel):
-    """A statement about outcomes, and the claim by which results decide it.
+    """A statement about outcomes, and a claim that results can test.
 
     Attributes
     ----------
     id, statement : str
         Short name, and a sentence.
     source : str
-        Section and figure that state it.
+        Section and figure with the statement.
     claim : Claim
-        The statement in a form that can be tested.
+        The statement in testable form.
     confidence : float
-        Level of the intervals that decide.
+        Level of the intervals.
     """
 
     id: str = Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")
@@ -39,7 +39,7 @@ class Finding(FrozenModel):
         return tuple(dict.fromkeys(quantity.scenario for quantity in self.claim.quantities))
 
 
-class _File(FrozenModel):
+class _FindingsFile(FrozenModel):
     findings: tuple[Finding, ...] = Field(min_length=1)
 
     @model_validator(mode="after")
@@ -57,19 +57,19 @@ def read_findings(path: Path) -> tuple[Finding, ...]:
     Raises
     ------
     InputError
-        The file cannot be read, is not TOML, or holds anything but findings.
+        The file cannot be read, is not TOML, or has invalid or other content.
     """
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise InputError("findings", str(path), "must be a readable TOML file") from error
-    return parse(text, str(path))
+    return parse_findings(text, str(path))
 
 
-def parse(text: str, name: str) -> tuple[Finding, ...]:
-    """Read findings from TOML text; errors as for `read_findings` refer to it as `name`."""
+def parse_findings(text: str, name: str) -> tuple[Finding, ...]:
+    """Read findings from TOML text; `name` identifies it in errors, which are those of `read_findings`."""
     try:
         content = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InputError("findings", name, f"must be TOML: {error}") from error
-    return _File(**content).findings
+    return _FindingsFile(**content).findings

@@ -1,7 +1,7 @@
-"""Judging findings: an interval over seeds against the region in which the claim is true.
+"""Judging findings: comparing an interval over seeds with the region where the claim is true.
 
-A claim holds if the whole interval is inside the region and fails if it is outside. It is undecided if the
-interval crosses the border, or if there are too few seeds for an interval of its level.
+A claim holds if the whole interval is inside the region, and fails if the whole interval is outside. It is
+undecided if the interval contains a bound of the region, or if there are too few seeds for an interval.
 """
 
 import math
@@ -9,7 +9,7 @@ import math
 from kswarms.analysis.findings.claims import Agreement, Claim, Compare, Overtake, Peak, Share, Trend
 from kswarms.analysis.findings.comparing import judge_at_each, judge_over_all
 from kswarms.analysis.findings.curve_claims import judge_overtaking, judge_peak, judge_trend
-from kswarms.analysis.findings.data import Data, NoDataError
+from kswarms.analysis.findings.data import ClaimData, NoDataError
 from kswarms.analysis.findings.finding import Finding
 from kswarms.analysis.findings.learned_claims import judge_agreement, judge_share
 from kswarms.analysis.findings.verdicts import NO_DATA, Outcome, Verdict
@@ -22,11 +22,11 @@ def judge(finding: Finding, results: Results) -> Verdict:
     Raises
     ------
     InputError
-        The results hold a game twice or policies without their games, or the claim must name one of several
+        The results have a game twice, or policies without games; or the claim does not name one of several
         opponents.
     """
     try:
-        outcome = _judge_claim(finding.claim, Data(finding.claim, results), finding.confidence)
+        outcome = _judge_claim(finding.claim, ClaimData(finding.claim, results), finding.confidence)
     except NoDataError as missing:
         return Verdict(finding.id, finding.statement, NO_DATA, note=str(missing))
     return Verdict(
@@ -42,7 +42,7 @@ def judge(finding: Finding, results: Results) -> Verdict:
     )
 
 
-def _judge_claim(claim: Claim, data: Data, confidence: float) -> Outcome:
+def _judge_claim(claim: Claim, data: ClaimData, confidence: float) -> Outcome:
     match claim:
         case Compare(over="each N"):
             return judge_at_each(claim, data, confidence)

@@ -1,4 +1,4 @@
-"""Judging claims about learned policies: shares of robots, agreement with the published tables."""
+"""Judging claims about learned policies: shares of robots, and agreement with published tables."""
 
 import math
 from collections.abc import Sequence
@@ -9,18 +9,18 @@ from scipy import stats
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.findings.claims import Agreement, Share
-from kswarms.analysis.findings.data import Data, NoDataError, listed, sizes
-from kswarms.analysis.findings.evidence import too_few
+from kswarms.analysis.findings.data import ClaimData, NoDataError, format_densities, sizes
+from kswarms.analysis.findings.evidence import too_few_note
 from kswarms.analysis.findings.verdicts import Outcome, Region
 from kswarms.analysis.results.published import learned_percentages
 from kswarms.analysis.statistics.intervals import Interval, Values, bootstrap_interval
 
 
-def judge_share(claim: Share, data: Data, confidence: float) -> Outcome:
-    """Judge a share of all robots by the wider bounds of two intervals.
+def judge_share(claim: Share, data: ClaimData, confidence: float) -> Outcome:
+    """Judge a share of all robots by an interval that covers two intervals.
 
-    Robots of one game are not independent, so games are resampled. If all robots learned the same, all
-    resamples are equal, and the exact binomial interval of the robots is wider.
+    Robots of one game are not independent, so the first interval resamples games. It has width 0 if all
+    robots learned the same action; the second interval is the exact binomial interval over the robots.
     """
     (shares,) = data.complete()
     robots = sizes(data.results, claim.quantity).reindex_like(shares)
@@ -38,15 +38,15 @@ def judge_share(claim: Share, data: Data, confidence: float) -> Outcome:
     low, high = min(by_game.low, 100 * by_robot.low), max(by_game.high, 100 * by_robot.high)
     interval = Interval(by_game.estimate, low, high)
     verdict = Region(claim.above, math.inf, closed=False).verdict(interval)
-    notes = [*data.notes, f"{learned} of {total} robots", too_few(len(counts), confidence)]
+    notes = [*data.notes, f"{learned} of {total} robots", too_few_note(len(counts), confidence)]
     return Outcome(verdict, interval, claim.quantity.unit, len(counts), notes)
 
 
-def judge_agreement(claim: Agreement, data: Data, confidence: float) -> Outcome:
+def judge_agreement(claim: Agreement, data: ClaimData, confidence: float) -> Outcome:
     """Judge the mean absolute error of the cells of a published table."""
     published = _published(claim, data.densities)
     if np.isnan(published).all():
-        raise NoDataError(f"nothing published at {listed(data.densities)}")
+        raise NoDataError(f"nothing published at {format_densities(data.densities)}")
     values = np.stack([table.to_numpy() for table in data.complete()], axis=-1)
 
     def mean_absolute_error(means: Values) -> Values:
@@ -54,7 +54,7 @@ def judge_agreement(claim: Agreement, data: Data, confidence: float) -> Outcome:
 
     interval = bootstrap_interval(values, mean_absolute_error, confidence)
     verdict = Region(-math.inf, claim.margin).verdict(interval)
-    notes = [*data.notes, f"{np.isfinite(published).sum()} cells", too_few(len(values), confidence)]
+    notes = [*data.notes, f"{np.isfinite(published).sum()} cells", too_few_note(len(values), confidence)]
     return Outcome(verdict, interval, "percentage points", len(values), notes)
 
 

@@ -1,4 +1,4 @@
-"""Quantities that a game has: a measure of one swarm, or of all swarms together."""
+"""Quantities of a game: a measure of one swarm, or of all swarms together."""
 
 from typing import Final, Self
 
@@ -19,7 +19,7 @@ UNITS: Final = {
     "learned_attack": "% of robots",
     "learned_flight_within": "% of robots",
 }
-"""Measures and their units."""
+"""Units of the measures."""
 
 LEARNED: Final = ("learned_attack", "learned_flight_within")
 """Measures from `policies.parquet`; the others are from `runs.parquet`."""
@@ -31,13 +31,13 @@ class Quantity(FrozenModel):
     Attributes
     ----------
     measure : str
-        One of `UNITS`. Times are shares of T(a) + T(p).
+        Key of `UNITS`. Times are shares of T(a) + T(p).
     scenario, condition : str
-        The curve.
+        Curve of the results.
     swarm : int, optional
         1 … K; None for all swarms together.
     opponent : int, optional
-        Swarm that ``learned_attack`` is about, if the learner has several opponents.
+        Swarm that the robots learned to attack, for ``learned_attack`` with several opponents.
     """
 
     measure: str = "pucks"
@@ -51,11 +51,13 @@ class Quantity(FrozenModel):
         if self.measure not in UNITS:
             raise InputError("measure", self.measure, f"must be one of {', '.join(UNITS)}")
         if self.swarm is None and self.measure in LEARNED:
-            raise InputError("swarm", self.swarm, f"must be given: {self.measure} is of one swarm")
+            raise InputError("swarm", self.swarm, f"must be given: {self.measure} is a measure of one swarm")
         if self.swarm is None and self.measure in ("sud", "duration"):
-            raise InputError("swarm", self.swarm, f"must be given: {self.measure} does not add up")
+            raise InputError("swarm", self.swarm, f"must be given: {self.measure} has no sum")
         if self.opponent is not None and self.measure != "learned_attack":
-            raise InputError("opponent", self.opponent, "must be left out: only learned_attack has one")
+            raise InputError(
+                "opponent", self.opponent, "must be omitted: only learned_attack has an opponent"
+            )
         return self
 
     @property
@@ -65,7 +67,7 @@ class Quantity(FrozenModel):
 
     @property
     def unit_of_difference(self) -> str:
-        """Unit of a difference of two values."""
+        """Unit of the difference of two values."""
         return "percentage points" if self.unit.startswith("%") else self.unit
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""Verdicts, and the regions of numbers in which claims are true."""
+"""Verdicts, and regions of numbers where claims are true."""
 
 import math
 from dataclasses import dataclass
@@ -23,13 +23,13 @@ class Verdict:
     verdict : str
         ``holds``, ``fails``, ``undecided`` or ``no data``.
     effect, low, high : float or None
-        Deciding number and its interval; None if there is none, or if it is infinite.
+        Estimated effect and its interval; None if missing or infinite.
     unit : str
-        Their unit.
+        Unit of the effect.
     seeds : int
-        Smallest number of seeds at any density.
+        Minimum number of seeds at any density.
     note : str
-        Densities, missing data, and the number of seeds that would decide.
+        Densities, missing data, and the number of additional seeds for a decision.
     """
 
     finding: str
@@ -48,21 +48,21 @@ class Verdict:
 
     @property
     def interval(self) -> str:
-        """The interval as text without its unit; – for a missing bound."""
+        """The interval as text without unit; a missing bound is –."""
         low, high = ("–" if bound is None else f"{bound:.4g}" for bound in (self.low, self.high))
         return f"{low} … {high}"
 
 
 @dataclass(frozen=True)
 class Region:
-    """Numbers for which a claim is true: from `low` to `high`, with these if `closed`."""
+    """Numbers for which a claim is true: `low` to `high`, including both bounds if `closed`."""
 
     low: float
     high: float
     closed: bool = True
 
     def verdict(self, interval: Interval) -> str:
-        """Return ``holds`` for an interval inside the region, ``fails`` outside, else ``undecided``."""
+        """Return ``holds`` if an interval is inside the region, ``fails`` if outside, else ``undecided``."""
         if self.closed:
             inside = self.low <= interval.low and interval.high <= self.high
             outside = interval.high < self.low or self.high < interval.low
@@ -72,7 +72,7 @@ class Region:
         return HOLDS if inside else FAILS if outside else UNDECIDED
 
     def depth(self, interval: Interval) -> float:
-        """Return the distance of an interval from the border, negative if a bound is outside."""
+        """Return the distance of an interval to the nearest finite bound, negative if it extends outside."""
         depths = [interval.low - self.low] if math.isfinite(self.low) else []
         depths += [self.high - interval.high] if math.isfinite(self.high) else []
         return min(depths)
@@ -84,7 +84,7 @@ class Region:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Verdict on a claim, its deciding number, and notes (empty notes are left out)."""
+    """Verdict on a claim, with the interval of its effect, and notes (empty notes are ignored)."""
 
     verdict: str
     interval: Interval

@@ -1,1 +1,1 @@
-"""Measures of results: utilities, contributions, networks, emergence, density of conflicts."""
+"""Measures of results: utilities, contributions, networks, emergence, conflict density."""

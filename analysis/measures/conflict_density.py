@@ -1,4 +1,4 @@
-"""Where conflicts begin: their number in each cell of the arena."""
+"""Number of conflicts that begin in each cell of the arena."""
 
 import numpy as np
 import pandas as pd

@@ -16,14 +16,14 @@ from kswarms.agents.theory.swarms import swarm_utility_difference
 from kswarms.analysis.measures.utilities import COLUMNS, robot_utilities, utilities_by_swarm
 from kswarms.analysis.statistics.curves import spearman
 from kswarms.analysis.statistics.intervals import Interval, bootstrap_interval
-from kswarms.analysis.statistics.means import with_intervals
+from kswarms.analysis.statistics.means import mean_by_group
 
 Floats = NDArray[np.float64]
 
 _MIN_ROBOTS: Final = 3
 """Minimum number of robots for a rank correlation."""
 
-_QUESTION: Final = ["scenario", "condition", "n", "absent_from"]
+_SELECTION: Final = ["scenario", "condition", "n", "absent_from"]
 MEASURES: Final = {"pucks": "pucks", "time": "s"}
 """Kinds of SUD and their units."""
 QUANTITIES: Final = (*MEASURES, "reward", "reward_rate")
@@ -33,9 +33,9 @@ _TIMES: Final = ("t_a", "t_a_without", "t_p", "t_p_without")
 
 
 def time_sud(conflicts: Mapping[str, Sequence[Any]], swarms: int) -> list[float]:
-    """Return SUD in time-utility of each swarm of a game (Eq. 3.7 with 4.2 to 4.6, α = β = 1), in seconds.
+    """Return the SUD in time-utility (s) of each swarm of a game (Eq. 3.7 with 4.2 to 4.6, α = β = 1).
 
-    `conflicts` has the columns of ``conflicts.parquet``; the learning phase does not count.
+    `conflicts` has the columns of ``conflicts.parquet``; conflicts of the learning phase are ignored.
     """
     table = pd.DataFrame({name: conflicts[name] for name in COLUMNS})
     table = table[table["phase"] == "game"]
@@ -47,14 +47,14 @@ def time_sud(conflicts: Mapping[str, Sequence[Any]], swarms: int) -> list[float]
     return [swarm_utility_difference(utilities, swarm) for swarm in range(swarms)]
 
 
-def of_question(rows: pd.DataFrame, **question: object) -> pd.DataFrame:
+def select_contributions(rows: pd.DataFrame, **selection: object) -> pd.DataFrame:
     """Return the rows of one scenario, condition, N and kind of absence, with the contributions.
 
     Parameters
     ----------
     rows : pandas.DataFrame
         Rows of `contribution.parquet`.
-    **question
+    **selection
         Values of `scenario`, `condition`, `n`, `absent_from`; required for columns with several values.
 
     Returns
@@ -63,14 +63,14 @@ def of_question(rows: pd.DataFrame, **question: object) -> pd.DataFrame:
         The columns of `rows`; `pucks` and `time` (s), the contributions to SUD; `reward_rate`, the reward per
         second of conflicts and following program time (Eq. 4.15), NaN without conflicts.
     """
-    for name, value in question.items():
+    for name, value in selection.items():
         if value not in set(rows[name]):
             raise InputError(name, value, f"must be one of {', '.join(map(repr, sorted(set(rows[name]))))}")
         rows = rows[rows[name] == value]
-    for name in _QUESTION:
+    for name in _SELECTION:
         values = sorted(set(rows[name]))
         if len(values) != 1:
-            raise InputError(name, question.get(name), f"must be one of {', '.join(map(repr, values))}")
+            raise InputError(name, selection.get(name), f"must be one of {', '.join(map(repr, values))}")
     rows = rows.reset_index(drop=True)
     return rows.assign(
         pucks=(rows["sud"] - rows["sud_without"]).astype(float),
@@ -79,13 +79,15 @@ def of_question(rows: pd.DataFrame, **question: object) -> pd.DataFrame:
     )
 
 
-def measures_of(rows: pd.DataFrame) -> list[str]:
-    """Return the keys of `MEASURES` that have values."""
+def measures_with_values(rows: pd.DataFrame) -> list[str]:
+    """Return the keys of `MEASURES` with at least one value."""
     return [measure for measure in MEASURES if rows[measure].notna().any()]
 
 
 def mean_contributions(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return means of rows of `of_question` over the seeds, for each robot and for the mean robot of a swarm.
+    """Return means over the seeds for each robot, and for the mean robot of each swarm.
+
+    `rows` come from `select_contributions`.
 
     There is one row for each `swarm` and `robot`, then one row with robot −1 for the mean robot of each
     swarm: `seeds`; and for each of `QUANTITIES` its mean, under its own name, with its 95 % interval,
@@ -96,14 +98,14 @@ def mean_contributions(rows: pd.DataFrame) -> pd.DataFrame:
     both = pd.concat([rows, mean_robot])
     table = both.groupby(key).agg(seeds=("seed", "nunique"))
     for quantity in QUANTITIES:
-        columns = with_intervals(both, key, quantity).set_index(key)
+        columns = mean_by_group(both, key, quantity).set_index(key)
         for suffix, name in (("", "mean"), ("_low", "low"), ("_high", "high")):
             table[f"{quantity}{suffix}"] = columns[name]
     return table.reset_index().sort_values(key, key=lambda column: column.where(column >= 0, np.inf))
 
 
 def rank_correlations(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return rank correlations of reward and contribution in each swarm, from rows of `of_question`.
+    """Return rank correlations of reward and contribution in each swarm, from rows of `select_contributions`.
 
     Returns
     -------
@@ -116,7 +118,7 @@ def rank_correlations(rows: pd.DataFrame) -> pd.DataFrame:
     table = []
     for swarm, of_swarm in rows.groupby("swarm"):
         reward = _by_seed(of_swarm, "reward")
-        for measure in measures_of(rows) if reward.shape[1] >= _MIN_ROBOTS else ():
+        for measure in measures_with_values(rows) if reward.shape[1] >= _MIN_ROBOTS else ():
             contribution = _by_seed(of_swarm, measure)
             both = np.stack([reward, contribution], axis=-1)
             in_games = spearman(reward, contribution)
@@ -130,22 +132,22 @@ def rank_correlations(rows: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(table, columns=["swarm", "measure", *columns])
 
 
-def assumption(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return how much of the time in conflicts with a robot becomes program time if the robot is absent.
+def freed_time(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the share of conflict time with a robot that becomes program time if the robot is absent.
 
-    The source assumes that all of it does (Eqs. 4.9 to 4.11). Times without the robot are scaled to the
-    duration of the game with it; the durations differ only if a number of pucks ends the game.
+    The source assumes a share of 1 (Eqs. 4.9 to 4.11). Times without the robot are scaled to the
+    duration of the game with it; durations differ only if a number of pucks ends the game.
 
     Returns
     -------
     pandas.DataFrame
-        One row for each `swarm` of the robot and kind of `others` (`OTHERS`); seconds per game, summed over
-        the others and averaged over robots and seeds:
+        One row for each `swarm` of the robot and kind of `others` (`OTHERS`). Times are seconds per game,
+        summed over the others and averaged over robots and seeds:
 
         * `t_a`, `t_a_without`, `t_p`, `t_p_without`: T(a) and T(p) with and without the robot;
         * `met`: T(a) in the others' conflicts with the robot;
-        * `share`, `share_low`, `share_high`: (T(a) − T(a) without) / met with its 95 % interval: 1 if the
-          assumption holds, 0 if other conflicts replace these; NaN if no robot met it.
+        * `share`, `share_low`, `share_high`: (t_a − t_a_without) / met with its 95 % interval. It is 1 if the
+          assumption holds, 0 if other conflicts replace these, NaN if no robot met the robot.
     """
     table = []
     for swarm, of_swarm in rows.groupby("swarm"):
@@ -156,7 +158,7 @@ def assumption(rows: pd.DataFrame) -> pd.DataFrame:
             without = ["t_a_without", "t_p_without"]
             times[without] = times[without].mul(scale, axis=0)
             if (times["t_a"] + times["t_p"] == 0).all():
-                continue  # there are no such robots
+                continue  # the game has no such robots
             of_seeds = times.groupby(of_swarm["seed"]).mean().to_numpy()
             share, low, high = _finite(bootstrap_interval(of_seeds, _share))
             found: dict[str, Any] = {"swarm": swarm, "others": others, **times.mean()}
@@ -165,7 +167,7 @@ def assumption(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _share(means: Floats) -> Floats:
-    """Return the quotient of `assumption` for means of shape (resamples, 5), in the order of its columns."""
+    """Return `share` of `freed_time` from means of its five time columns, shape (resamples, 5)."""
     t_a, t_a_without, _, _, met = means.T
     share: Floats = np.divide(t_a - t_a_without, met, out=np.full_like(met, np.nan), where=met > 0)
     return share
@@ -178,7 +180,7 @@ def _by_seed(rows: pd.DataFrame, quantity: str) -> Floats:
 
 
 def _finite(interval: Interval) -> tuple[float, float, float]:
-    """Return estimate and bounds, NaN for the bounds of too few seeds."""
+    """Return estimate and bounds; infinite bounds (too few seeds) become NaN."""
     if np.isinf(interval.low):
         return interval.estimate, np.nan, np.nan
     return interval.estimate, interval.low, interval.high

@@ -1,4 +1,4 @@
-"""How policies emerge: choices and values Q over the learning time, and the arms of each robot at the end.
+"""Emergence of policies: choices and values Q over the learning time, and arms of each robot at the end.
 
 Choices and values come from the conflicts of one game: rows of `conflicts.parquet`, or
 `model.datacollector.get_table_dataframe("conflicts")`. The arms come from rows of `robots.parquet`.
@@ -12,13 +12,13 @@ import pandas as pd
 from kswarms.agents.common.errors import InputError
 
 BINS = 40
-"""Number of time intervals of a game."""
+"""Number of time intervals in the learning phase."""
 BANDIT = ["swarm", "opponent_swarm"]
-"""Columns that identify the bandits of a swarm."""
+"""Columns that identify a bandit: a learning swarm and its opponent."""
 
 
 def learning_conflicts(conflicts: pd.DataFrame) -> pd.DataFrame:
-    """Return the conflicts of the learning phase that bandits decided; `InputError` if no swarm learned."""
+    """Return conflicts of the learning phase decided by a bandit; `InputError` if no swarm learned."""
     learned = conflicts[conflicts["q"].notna()]
     if learned.empty:
         raise InputError("conflicts", "no row with a Q", "must be of a game with a learner")
@@ -58,7 +58,7 @@ def arm_values(conflicts: pd.DataFrame) -> pd.DataFrame:
 
 
 def _middles(start: pd.Series) -> np.ndarray:
-    """Return the middle of the interval of each start (s)."""
+    """Return the middle of the time interval that contains each start (s)."""
     edges = np.linspace(0, start.max() * (1 + 1e-9), BINS + 1)
     bins = np.clip(np.digitize(start, edges) - 1, 0, BINS - 1)
     return (edges[bins] + edges[bins + 1]) / 2

@@ -1,4 +1,4 @@
-"""Networks of conflicts: which robots met, how much swarms mix, and jams over time.
+"""Networks of conflicts: meetings of robots, mixing of swarms, and jams over time.
 
 All functions take the conflicts of one game: rows of `conflicts.parquet`, or
 `model.datacollector.get_table_dataframe("conflicts")`.
@@ -12,8 +12,8 @@ from scipy.sparse.csgraph import connected_components
 
 from kswarms.agents.common.errors import InputError
 
-SMALLEST_JAM = 3
-"""Minimum number of robots in a jam; two robots are only a conflict."""
+MIN_JAM_SIZE = 3
+"""Minimum number of robots in a jam; a conflict of two robots is not a jam."""
 
 
 def meeting_network(conflicts: pd.DataFrame) -> nx.Graph:
@@ -43,7 +43,7 @@ def meeting_network(conflicts: pd.DataFrame) -> nx.Graph:
 
 
 def describe_network(network: nx.Graph) -> dict[str, float]:
-    """Return numbers that describe a network of meetings with at least one edge.
+    """Return summary statistics of a network of meetings with at least one edge.
 
     * `robots`, `pairs` that met, `met`: share of all pairs that met, `meetings`;
     * `time`: robot-seconds in conflict, `inter`: share of that time between swarms;
@@ -72,7 +72,7 @@ def describe_network(network: nx.Graph) -> dict[str, float]:
 
 
 def mixing_matrix(network: nx.Graph, weight: str | None) -> np.ndarray:
-    """Return the sums of a weight, ``time`` or ``meetings``, between each two swarms; None counts pairs.
+    """Return the sums of an edge attribute, ``time`` or ``meetings``, by pair of swarms; None counts edges.
 
     The matrix is symmetric, float64, shape (K, K). Each pair counts once from each side, so a row sums to the
     meetings of its robots with all swarms.
@@ -95,13 +95,15 @@ def _assortativity(mixing: np.ndarray) -> float:
 
 
 def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:
-    """Return jams over time, every so many seconds: groups of robots linked by conflicts at the same moment.
+    """Return jams over time: groups of robots linked by conflicts at the same moment.
+
+    Moments are multiples of `every` (s).
 
     Returns
     -------
     pandas.DataFrame
         One row for each moment from the first start to the last end of a conflict: `time` (float64, s),
-        `jams` (int64): connected components of at least `SMALLEST_JAM` robots, `jammed` (int64): robots in
+        `jams` (int64): connected components of at least `MIN_JAM_SIZE` robots, `jammed` (int64): robots in
         these, `largest` (int64): robots in the largest component, 0 without any conflict.
     """
     if every <= 0:
@@ -109,16 +111,16 @@ def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:
     if conflicts.empty:
         raise InputError("conflicts", "no rows", "must hold at least one conflict")
     start = conflicts["start"].to_numpy()
-    # A conflict covers the moments with start ≤ moment < end. Moments are multiples of `every`, starts of the
-    # control period: subtract 1e-9 to absorb rounding errors of the quotients.
+    # A conflict covers the moments with start ≤ moment < end. Subtract 1e-9 to absorb rounding errors.
     first = np.ceil(start / every - 1e-9).astype(int)
     last = np.ceil((start + conflicts["t_a"].to_numpy()) / every - 1e-9).astype(int)
     origin, moments = first.min(), last.max() - first.min()
     lengths = last - first
+    # One edge for each conflict and moment: `edge` is the row of the conflict.
     edge = np.repeat(np.arange(len(conflicts)), lengths)
     moment = np.arange(lengths.sum()) + np.repeat(first - origin - np.cumsum(lengths) + lengths, lengths)
     robots = int(conflicts[["robot", "opponent"]].to_numpy().max()) + 1
-    # A node is a (moment, robot). No edge joins two moments, so one call finds the components of all moments.
+    # A node is a pair (moment, robot). No edge joins two moments, so one call finds all components.
     a = moment * robots + conflicts["robot"].to_numpy()[edge]
     b = moment * robots + conflicts["opponent"].to_numpy()[edge]
     nodes = max(moments, 1) * robots
@@ -128,7 +130,7 @@ def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:
     at = np.zeros(len(size), int)
     at[component] = np.arange(nodes) // robots
     groups = pd.DataFrame({"at": at, "size": size})[size > 1]
-    jammed = groups[groups["size"] >= SMALLEST_JAM].groupby("at")["size"].agg(["size", "sum"])
+    jammed = groups[groups["size"] >= MIN_JAM_SIZE].groupby("at")["size"].agg(["size", "sum"])
     columns = {"jams": jammed["size"], "jammed": jammed["sum"], "largest": groups.groupby("at")["size"].max()}
     over_time = pd.DataFrame(columns, index=range(moments)).fillna(0).astype(np.int64)
     over_time.insert(0, "time", (origin + np.arange(moments)) * every)

@@ -1,4 +1,4 @@
-"""Quantities of a scenario and its curves, from the rows of `runs.parquet`."""
+"""Quantities and curves of a scenario, from the rows of `runs.parquet`."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -10,12 +10,12 @@ from kswarms.agents.theory.times import share_of_time
 from kswarms.agents.user_code.syntax import split_outside
 
 TIME_SHARES: Final = ("total", "inter-swarm", "intra-swarm")
-"""Kinds of conflict with a share of a swarm's time."""
+"""Kinds of conflict, as columns with the share of time of a swarm."""
 
 # Scenarios for which the source shows other quantities than pucks.
-_OF_SUD_6: Final = {"fig-6.10a", "fig-6.10b", "fig-6.12", "fig-6.14"}
-_OF_SUD_7: Final = {"fig-7.4", "fig-7.6", "fig-7.8", "fig-7.10", "fig-7.11", "fig-7.19"}
-_OF_TIME: Final = {"fig-6.3"}
+_SUD_CHAPTER_6: Final = {"fig-6.10a", "fig-6.10b", "fig-6.12", "fig-6.14"}
+_SUD_CHAPTER_7: Final = {"fig-7.4", "fig-7.6", "fig-7.8", "fig-7.10", "fig-7.11", "fig-7.19"}
+_TIME_SHARE_SCENARIOS: Final = {"fig-6.3"}
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Curve:
     swarm: int | None
 
 
-def of_scenario(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
+def scenario_rows(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
     """Return the rows of a scenario; `InputError` if `runs` has none."""
     rows = runs[runs["scenario"] == scenario]
     if rows.empty:
@@ -58,18 +58,18 @@ def split_curves(rows: pd.DataFrame) -> list[Curve]:
 
 
 def short_policy(policy: str) -> str:
-    """Return a policy without arguments and path, which are too long for a legend."""
+    """Return a policy without arguments and paths, for legends."""
     return "+".join(part.partition("(")[0].rpartition(":")[2] for part in split_outside(policy, "+"))
 
 
-def quantities(scenario: str) -> tuple[str, ...]:
+def shown_quantities(scenario: str) -> tuple[str, ...]:
     """Return the quantities in the figure of a scenario: `TIME_SHARES`, ``sud`` (of S2) or ``pucks``."""
-    if scenario in _OF_SUD_6 | _OF_SUD_7:
+    if scenario in _SUD_CHAPTER_6 | _SUD_CHAPTER_7:
         return ("sud",)
-    return TIME_SHARES if scenario in _OF_TIME else ("pucks",)
+    return TIME_SHARES if scenario in _TIME_SHARE_SCENARIOS else ("pucks",)
 
 
-def with_time_shares(rows: pd.DataFrame) -> pd.DataFrame:
+def add_time_shares(rows: pd.DataFrame) -> pd.DataFrame:
     """Add the shares of time in conflict, T(a) / (T(a) + T(p)): a column for each of `TIME_SHARES`."""
     in_conflict = rows["t_a_intra"] + rows["t_a_inter"]
     times = (in_conflict, rows["t_a_inter"], rows["t_a_intra"])

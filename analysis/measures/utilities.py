@@ -1,4 +1,4 @@
-"""Utilities measured on recorded games: chapter 3 with the time-utilities of chapter 4 (section 1.3).
+"""Utilities of recorded games: chapter 3 with the time-utilities of chapter 4 (section 1.3).
 
     robots = robot_utilities(conflicts, alpha=1.0, beta=1.0)   # u_i^m, U_i, W_i of every robot
     swarms = utilities_by_swarm(robots)                        # U_Sk, SUD of every swarm
@@ -6,22 +6,22 @@
 `conflicts` has the columns of ``conflicts.parquet``, with ``seen``: `read_conflicts(directory, seen=True)` or
 ``pandas.DataFrame(model.tables()["conflicts"])``. The column ``run`` is optional.
 
-A conflict that robot i began is an interaction with all robots that its active sensors read at the start
-(column ``seen``): n_k of its own swarm, n_m of each other swarm. It lasts until i begins its next conflict.
-T(a_i) and T(p_i) are i's own times; T(a_j) and T(p_j) are the seconds that robot j spent in A and in P during
-that interval, whether or not j noticed i. Then
+A conflict that robot i begins is an interaction with all robots that its active sensors read at the start
+(column ``seen``): n_k robots of its own swarm, n_m robots of each other swarm. It lasts until i begins its
+next conflict. T(a_i) and T(p_i) are the times of i; T(a_j) and T(p_j) are the seconds that robot j spends in
+A and in P during that interval, whether or not j notices i. Then
 
-* u_i^k is Eq. 4.2; the robots of its own swarm have their utility from their own conflicts;
-* u_i^m is Eq. 4.5; each opponent j that was seen has the opposite of its part, Eq. 4.3, by Eq. 3.1. So the
-  utilities of two swarms from each other sum to zero. If both robots noticed, both conflicts count;
-* W_i is Eq. 4.14, summed over the conflicts that i began.
+* u_i^k is Eq. 4.2. The seen robots of swarm k get no utility from this conflict.
+* u_i^m is Eq. 4.5. Each seen opponent j gets −1 times its term, Eq. 4.3, by Eq. 3.1. So the utilities of two
+  swarms from each other sum to zero. If both robots begin a conflict, both conflicts count.
+* W_i is Eq. 4.14, summed over the conflicts that i begins.
 
-α and β are positive numbers: one for all, one for each swarm (``{1: …, 2: …}``), or one for each pair of
-swarm and opponent's swarm (``{(1, 1): …, (1, 2): …, …}``). For robot i the pair is its own swarm and that of
-the robot it met; for every other robot, its own swarm and that of i.
+α and β are positive numbers: one for all swarms, one for each swarm (``{1: …, 2: …}``), or one for each pair
+of swarm and opponent's swarm (``{(1, 1): …, (1, 2): …, …}``). For robot i the pair is its swarm and the swarm
+of the robot it meets; for every other robot, its swarm and the swarm of i.
 
-A robot that neither began a conflict nor was seen in one has no row; its utilities are 0. An action that
-began before the measured game belongs to no conflict of it; its rest counts as program.
+A robot without conflicts that no robot sees has no row; its utilities are 0. The rest of an action that began
+before the measured game counts as program time.
 """
 
 import math
@@ -59,7 +59,7 @@ def robot_utilities(
     conflicts : pandas.DataFrame
         Conflicts of one game, or of several with the column ``run``.
     alpha, beta : float, or mapping of int or of (int, int) to float
-        Weights of the seconds in A and in P.
+        Weights of the seconds in A (α) and in P (β).
     phase : {'game', 'learning'}
         Phase of the game.
 
@@ -67,7 +67,7 @@ def robot_utilities(
     -------
     pandas.DataFrame
         One row for each robot that began a conflict or was seen in one, sorted by number: ``run`` (if given),
-        ``robot``, ``swarm`` (from 1), ``conflicts`` that it began, ``u_1`` … ``u_K`` (u_i^m), ``utility``
+        ``robot``, ``swarm`` (from 1), ``conflicts`` (number it began), ``u_1`` … ``u_K`` (u_i^m), ``utility``
         (U_i) and ``wlu`` (W_i), in weighted seconds. K is the largest number of swarms of any game; u_m is 0
         if a game has no swarm m.
 
@@ -76,10 +76,10 @@ def robot_utilities(
     InputError
         A column is missing, the phase has no conflicts, or a weight is missing or not positive.
     """
-    rows = _measured(conflicts, phase)
+    rows = _phase_conflicts(conflicts, phase)
     if "run" not in rows.columns:
-        return _of_game(rows, alpha, beta)
-    games = {run: _of_game(game, alpha, beta) for run, game in rows.groupby("run", sort=False)}
+        return _game_utilities(rows, alpha, beta)
+    games = {run: _game_utilities(game, alpha, beta) for run, game in rows.groupby("run", sort=False)}
     widest = max(games.values(), key=lambda table: len(table.columns))
     together = pd.concat(games, names=["run", None]).reset_index("run")[["run", *widest]]
     return together.fillna(0.0).reset_index(drop=True)
@@ -106,7 +106,7 @@ def utilities_by_swarm(robots: pd.DataFrame) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def _measured(conflicts: pd.DataFrame, phase: str) -> pd.DataFrame:
+def _phase_conflicts(conflicts: pd.DataFrame, phase: str) -> pd.DataFrame:
     """Return the conflicts of a phase."""
     missing = [name for name in COLUMNS if name not in conflicts.columns]
     if missing:
@@ -118,7 +118,8 @@ def _measured(conflicts: pd.DataFrame, phase: str) -> pd.DataFrame:
     return rows
 
 
-def _of_game(rows: pd.DataFrame, alpha: Weights, beta: Weights) -> pd.DataFrame:
+def _game_utilities(rows: pd.DataFrame, alpha: Weights, beta: Weights) -> pd.DataFrame:
+    """Return `robot_utilities` of one game; swarms are counted from 0 inside, conflicts by row."""
     seen = [[[int(j) for j in robots] for robots in each] for each in rows["seen"]]
     swarms = len(seen[0])
     named = [*rows["swarm"], *rows["opponent_swarm"]]
@@ -127,7 +128,7 @@ def _of_game(rows: pd.DataFrame, alpha: Weights, beta: Weights) -> pd.DataFrame:
     swarm_of = {j: m for each in seen for m, robots in enumerate(each) for j in robots}
     swarm_of |= {int(i): int(k) - 1 for i, k in zip(rows["robot"], rows["swarm"], strict=True)}
     weights = _by_pair("alpha", alpha, swarms), _by_pair("beta", beta, swarms)
-    spent = _spent_by_others(rows, seen)
+    spent = _times_of_seen(rows, seen)
     u = {robot: [0.0] * swarms for robot in swarm_of}
     wlu = dict.fromkeys(swarm_of, 0.0)
     columns = [rows[name].tolist() for name in ("robot", "opponent_swarm", "t_a", "t_p")]
@@ -159,7 +160,7 @@ def _of_game(rows: pd.DataFrame, alpha: Weights, beta: Weights) -> pd.DataFrame:
     return table
 
 
-def _spent_by_others(
+def _times_of_seen(
     rows: pd.DataFrame, seen: Sequence[Sequence[Sequence[int]]]
 ) -> dict[tuple[int, int], tuple[float, float]]:
     """Return the seconds in A and in P of each robot seen in each conflict, by (conflict, robot)."""
@@ -171,7 +172,7 @@ def _spent_by_others(
     t_a = np.zeros(len(pairs))
     for j, own in rows.reset_index(drop=True).groupby("robot"):
         order = own.sort_values("start").index
-        # Seconds in A up to each instant: rising within actions, constant between them.
+        # Cumulative seconds in A: they rise within actions and are constant between actions.
         instants = np.column_stack([start[order], start[order] + action[order]]).ravel()
         total = np.cumsum(np.column_stack([np.zeros(len(order)), action[order]]).ravel())
         # Rounding can put the end of an action after the start of the next one.
@@ -185,7 +186,7 @@ def _spent_by_others(
 
 
 def _by_pair(name: str, given: Weights, swarms: int) -> list[list[float]]:
-    """Return the weight of each swarm (row) against each swarm (column), from 0."""
+    """Return the weight of each swarm (row) against each swarm (column), both counted from 0."""
     ids = range(1, swarms + 1)
     return [[_weight(name, given, k, m) for m in ids] for k in ids]
 

@@ -10,7 +10,7 @@ from kswarms.analysis.text_tables import TextTable, span
 
 @dataclass(frozen=True)
 class PlannedScenario:
-    """The games of a scenario: `seeds` games at each density (number of robots in all) of each condition."""
+    """Planned games of a scenario: `seeds` games for each condition and density (number of robots in all)."""
 
     title: str
     conditions: tuple[str, ...]
@@ -19,14 +19,14 @@ class PlannedScenario:
 
 
 def coverage(runs: pd.DataFrame, plan: Mapping[str, PlannedScenario]) -> pd.DataFrame:
-    """Compare the games in the results with a plan, whose keys are ids of scenarios.
+    """Compare the games in the results with a plan by scenario id.
 
     Returns
     -------
     pandas.DataFrame
-        One row for each `scenario`, in the order of the plan: `planned` (int64), the number of games in the
-        plan; `games` (int64), how many of them exist; `missing` (str), a description of the others, empty if
-        there are none. A game that two conditions share counts twice.
+        One row for each `scenario`, in the order of the plan: `games` (int64), the number of planned games
+        in the results; `planned` (int64), the number of planned games; `missing` (str), a description of
+        the missing games, empty if there are none. A game that two conditions share counts twice.
     """
     points = runs[["scenario", "condition", "n", "seed"]].drop_duplicates()
     rows = []
@@ -63,9 +63,9 @@ def _absent(planned: Iterable[object], found: pd.Series) -> str:
 
 
 def coverage_table(frame: pd.DataFrame) -> TextTable:
-    """Return the partly played scenarios of `coverage` as a table.
+    """Return the incomplete scenarios of `coverage` as a table.
 
-    The caption has the number of complete scenarios and the ids of those without games.
+    The caption has the number of complete scenarios and the ids of scenarios without games.
     """
     absent = frame[frame["games"] == 0]["scenario"]
     partial = frame[(frame["games"] > 0) & (frame["missing"] != "")]

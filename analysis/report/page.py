@@ -1,7 +1,7 @@
-"""Elements of the report's page, and their files.
+"""Elements of the report page, and their files.
 
-A report has chapters, chapters have parts, and parts have text, figures and tables. The page is one HTML file
-that needs no network: images and downloads are data URIs, and there is no script.
+A report consists of chapters; a chapter consists of parts with text, figures and tables. The page is one HTML
+file that needs no network: images and downloads are data URIs, and there is no script.
 """
 
 import base64
@@ -40,7 +40,7 @@ class PageFigure:
 
     @property
     def files(self) -> dict[str, bytes]:
-        """Content of the PNG and SVG files by name."""
+        """Contents of the PNG and SVG files, by file name."""
         return {f"{self.name}.{kind}": content for kind, content in self.image.files.items()}
 
 
@@ -52,27 +52,27 @@ class PageTable:
     """Name of its files, without suffix."""
     title: str
     table: TextTable
-    """The table as shown."""
+    """The table as text."""
     frame: pd.DataFrame
-    """The numbers with all digits."""
+    """The numbers in full precision."""
 
     @property
     def files(self) -> dict[str, bytes]:
-        """Content of the CSV, Markdown and HTML files by name."""
+        """Contents of the CSV, Markdown and HTML files, by file name."""
         csv, markdown, html = self.frame.to_csv(index=False), self.table.to_markdown(), self.table.to_html()
         texts = {"csv": csv, "md": markdown, "html": html}
         return {f"{self.name}.{kind}": text.encode() for kind, text in texts.items()}
 
     @property
     def downloads(self) -> dict[str, str]:
-        """Data URIs of CSV and Markdown by file name."""
+        """Data URIs of the CSV and Markdown files, by file name."""
         kinds = {f"{self.name}.csv": "text/csv", f"{self.name}.md": "text/markdown"}
         return {name: f"data:{kind};charset=utf-8,{quote(self.files[name])}" for name, kind in kinds.items()}
 
 
 @dataclass
 class Part:
-    """A section of a chapter: paragraphs, then figures, tables and preformatted text."""
+    """A section of a chapter: paragraphs, figures, tables and preformatted text, in this order."""
 
     id: str
     """Anchor in the page."""
@@ -80,11 +80,11 @@ class Part:
     text: list[str] = field(default_factory=list)
     figures: list[PageFigure] = field(default_factory=list)
     tables: list[PageTable] = field(default_factory=list)
-    source: str = ""
+    preformatted: str = ""
 
     @property
     def files(self) -> dict[str, bytes]:
-        """Content of the files of its figures and tables by name."""
+        """Contents of the files of all figures and tables, by file name."""
         items: list[PageFigure | PageTable] = [*self.figures, *self.tables]
         return {name: content for item in items for name, content in item.files.items()}
 
@@ -108,18 +108,18 @@ class Chapter:
 
 @dataclass(frozen=True)
 class Report:
-    """A report: heading, paragraphs below it, and chapters, which the table of contents lists."""
+    """A report: title, paragraphs of a summary, and chapters. The page has a table of contents."""
 
     title: str
     summary: Sequence[str]
     chapters: Sequence[Chapter]
 
     def to_html(self) -> str:
-        """Return the page."""
+        """Return the page as HTML."""
         return TEMPLATES.get_template("report.html").render(report=self)
 
     def write_page(self, path: Path) -> None:
-        """Write the page; `InputError` if that fails, then an existing file is unchanged."""
+        """Write the page; `InputError` on failure, and an existing file is unchanged."""
         write_file(path, self.to_html().encode(), "out")
 
     def write_files(self, folder: Path) -> int:

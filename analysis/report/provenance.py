@@ -19,13 +19,13 @@ _LIBRARIES: Final = ("kswarms", "matplotlib", "networkx", "numpy", "pandas", "py
 
 
 def libraries_part() -> Part:
-    """Show the versions of Python and the libraries that make the report."""
+    """Return the part with the versions of Python and the libraries that made the report."""
     made_with = ", ".join(f"{name} {version(name)}" for name in _LIBRARIES)
     return Part("made-with", "This report", [f"Made with {made_with}, Python {platform.python_version()}."])
 
 
 def directory_parts(directory: Path) -> list[Part]:
-    """Show the files of a results directory and its manifest; `InputError` if one cannot be read."""
+    """Return parts for the files of a results directory and its manifest; `InputError` if unreadable."""
     described = [_describe(path) for path in sorted(directory.glob("*.parquet"))]
     rows = [[each["file"], str(each["rows"]), str(each["bytes"]), each["sha256"][:16]] for each in described]
     files = Part("files", "Files")
@@ -36,7 +36,7 @@ def directory_parts(directory: Path) -> list[Part]:
     if not manifest.is_file():
         text = f"The directory has no {MANIFEST_FILE}: versions and commands of the runs are unknown."
         return [files, Part("manifest", "Manifest", [text])]
-    return [files, *_manifest_parts(_read(manifest))]
+    return [files, *_manifest_parts(_read_manifest(manifest))]
 
 
 def _describe(path: Path) -> dict[str, Any]:
@@ -46,7 +46,7 @@ def _describe(path: Path) -> dict[str, Any]:
     return {"file": path.name, "rows": rows, "bytes": path.stat().st_size, "sha256": digest}
 
 
-def _read(path: Path) -> dict[str, Any]:
+def _read_manifest(path: Path) -> dict[str, Any]:
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
@@ -57,15 +57,16 @@ def _read(path: Path) -> dict[str, Any]:
 
 
 def _manifest_parts(content: dict[str, Any]) -> list[Part]:
-    """Return one part for all short entries, and a part for each long entry, such as the scenarios."""
+    """Return one part with all short entries, and a part for each long entry, such as the scenarios."""
     long = {key: value for key, value in content.items() if isinstance(value, dict | list) and value}
     lines = "\n".join(f"{key}: {value}" for key, value in content.items() if key not in long)
-    parts = [Part("manifest", f"Manifest ({MANIFEST_FILE})", source=lines)]
-    parts += [Part(f"manifest-{key}", f"Manifest: {key}", source=_text(value)) for key, value in long.items()]
+    parts = [Part("manifest", f"Manifest ({MANIFEST_FILE})", preformatted=lines)]
+    for key, value in long.items():
+        parts.append(Part(f"manifest-{key}", f"Manifest: {key}", preformatted=_entry_text(value)))
     return parts
 
 
-def _text(value: Any) -> str:
+def _entry_text(value: Any) -> str:
     if not isinstance(value, dict) or not all(isinstance(text, str) for text in value.values()):
         return json.dumps(value, indent=2, ensure_ascii=False)
     if any("\n" in text for text in value.values()):

@@ -9,17 +9,17 @@ import numpy as np
 import pandas as pd
 
 from kswarms.analysis.figures import emergence, heat_maps, networks
-from kswarms.analysis.film.painter import Places
+from kswarms.analysis.film.painter import ArenaLayout
 from kswarms.analysis.measures.networks import describe_network, jams, meeting_network
 from kswarms.analysis.report.page import Part
 from kswarms.analysis.results.records import read_conflicts, read_robots, recorded_runs
 from kswarms.analysis.text_tables import TextTable, number
 
 MAX_GAMES: Final = 4
-"""Maximum number of recorded games of a condition and density that the report uses."""
+"""Maximum number of recorded games that the report uses for a condition and density."""
 
-PlacesOf = Callable[[str, str, int, int], Places | None]
-"""Returns the arena of a scenario, condition, number of robots and seed, or None if it is unknown."""
+ArenaOf = Callable[[str, str, int, int], ArenaLayout | None]
+"""Maps scenario, condition, number of robots and seed to the arena, None if it is unknown."""
 
 _NETWORK_COLUMNS: Final = {
     "n": ("N", ".0f"),
@@ -36,7 +36,7 @@ _NETWORK_COLUMNS: Final = {
     "jammed": ("robots\nin jams", ".1f"),
     "largest": ("largest\ncluster", ".1f"),
 }
-"""Header and format of the columns of the table of networks."""
+"""Headers and number formats of the network table, by column."""
 
 _NETWORK_CAPTION: Final = (
     "of the measured game; degree: other robots that a robot met; strength: time that a robot spent in "
@@ -47,7 +47,7 @@ _NETWORK_CAPTION: Final = (
 
 @dataclass(frozen=True)
 class RecordedCondition:
-    """A condition and its recorded games: one row of `runs.parquet` for each."""
+    """A condition and its recorded games, one row of `runs.parquet` for each game."""
 
     scenario: str
     condition: str
@@ -55,13 +55,13 @@ class RecordedCondition:
 
     @property
     def name(self) -> str:
-        """Name of the condition, with its scenario."""
+        """Scenario and condition."""
         return f"{self.scenario}, {self.condition}" if self.condition else self.scenario
 
     @property
     def id(self) -> str:
-        """The name as part of an anchor."""
-        return "".join(sign if sign.isalnum() else "-" for sign in self.name)
+        """The name as part of anchors and file names; special characters become hyphens."""
+        return "".join(character if character.isalnum() else "-" for character in self.name)
 
     @property
     def densest(self) -> pd.DataFrame:
@@ -71,7 +71,7 @@ class RecordedCondition:
 
     @property
     def densest_name(self) -> str:
-        """Name of the condition, with density and number of the games in `densest`."""
+        """Name of the condition with the density and the number of seeds of `densest`."""
         games = self.densest
         seeds = games["seed"].nunique()
         return f"{self.name}: N = {games['n'].iloc[0]}, {seeds} seed{'s' if seeds > 1 else ''}"
@@ -93,18 +93,18 @@ def recorded_conditions(directory: Path, table: str, runs: pd.DataFrame) -> list
 
 
 def conflict_parts(
-    directory: Path, condition: RecordedCondition, places_of: PlacesOf
+    directory: Path, condition: RecordedCondition, arena_of: ArenaOf
 ) -> Iterator[tuple[str, Part]]:
-    """Yield parts about recorded conflicts with their chapters: ``networks``, ``maps`` or ``emergence``."""
-    first = condition.densest.iloc[0]
+    """Yield (chapter, part) for recorded conflicts; chapters are ``networks``, ``maps``, ``emergence``."""
+    shown = condition.densest.iloc[0]
     conflicts = read_conflicts(directory, condition.densest["run"])
     measured = conflicts[conflicts["phase"] == "game"]
-    first_game = measured[measured["run"] == first["run"]]
-    name = f"{condition.name}: N = {first['n']}, seed {first['seed']}"
-    if not first_game.empty:
-        yield "networks", _network_part(directory, condition, first_game, name)
-        yield "maps", _map_part(condition, measured, places_of)
-    with_learning = conflicts[conflicts["run"] == first["run"]]
+    game = measured[measured["run"] == shown["run"]]
+    name = f"{condition.name}: N = {shown['n']}, seed {shown['seed']}"
+    if not game.empty:
+        yield "networks", _network_part(directory, condition, game, name)
+        yield "maps", _map_part(condition, measured, arena_of)
+    with_learning = conflicts[conflicts["run"] == shown["run"]]
     if with_learning["q"].notna().any():
         yield "emergence", _emergence_part(condition, with_learning, name)
 
@@ -114,7 +114,7 @@ def _network_part(directory: Path, condition: RecordedCondition, game: pd.DataFr
     part.add_figure(
         part.id,
         networks.network_figure(meeting_network(game), f"{name}: meetings"),
-        f"Network and matrix of the time that each two robots spent in conflict, {name}.",
+        f"Network and matrix of the time that each pair of robots spent in conflict, {name}.",
         f"Meetings in the measured game, {name}. Left: the wider and darker a line, the longer the conflicts "
         "of the two robots. Right: the same times as a matrix; grey pairs never met.",
     )
@@ -140,22 +140,22 @@ def _network_part(directory: Path, condition: RecordedCondition, game: pd.DataFr
     return part
 
 
-def _map_part(condition: RecordedCondition, measured: pd.DataFrame, places_of: PlacesOf) -> Part:
+def _map_part(condition: RecordedCondition, measured: pd.DataFrame, arena_of: ArenaOf) -> Part:
     part = Part(f"map-{condition.id}", condition.name)
     name = condition.densest_name
     part.add_figure(
         part.id,
-        heat_maps.heat_map_figure(measured, name, _common_places(condition, places_of)),
+        heat_maps.heat_map_figure(measured, name, _common_arena(condition, arena_of)),
         f"Heat maps of the places where conflicts began in the measured game, all and by action, {name}.",
         f"Places where conflicts began in the measured game, all and by action, with their numbers; {name}.",
     )
     return part
 
 
-def _common_places(condition: RecordedCondition, places_of: PlacesOf) -> Places | None:
-    """Return the arena of the games in `densest`, None if they differ or are unknown."""
+def _common_arena(condition: RecordedCondition, arena_of: ArenaOf) -> ArenaLayout | None:
+    """Return the arena of the games in `densest`, None if arenas differ or are unknown."""
     games = condition.densest[["n", "seed"]].to_numpy().tolist()
-    first, *others = (places_of(condition.scenario, condition.condition, n, seed) for n, seed in games)
+    first, *others = (arena_of(condition.scenario, condition.condition, n, seed) for n, seed in games)
     if first is None or not all(o is not None and np.array_equal(o.stations, first.stations) for o in others):
         return None
     return first
@@ -166,20 +166,20 @@ def _emergence_part(condition: RecordedCondition, conflicts: pd.DataFrame, name:
     part.add_figure(
         f"choices-{condition.id}",
         emergence.choices_figure(conflicts, f"{name}: choices"),
-        f"Line chart of the share of an action among learners' choices over the time of learning, {name}.",
+        f"Line chart of the share of an action among learners' choices over the learning time, {name}.",
         f"Choices while learning, of all conflicts of the swarm and of each robot, {name}.",
     )
     part.add_figure(
         f"values-{condition.id}",
         emergence.values_figure(conflicts, f"{name}: Q"),
-        f"Line chart of the value Q of each action over the time of learning, {name}.",
+        f"Line chart of the value Q of each action over the learning time, {name}.",
         f"Q while learning (Eq. 4.15), mean of the swarm and of each robot, {name}.",
     )
     return part
 
 
 def robots_parts(directory: Path, condition: RecordedCondition) -> Iterator[tuple[str, Part]]:
-    """Yield the part about the final Q of each robot and its chapter ``emergence``, if any robot learned."""
+    """Yield (``emergence``, part) with the final Q of each robot, if any robot learned."""
     robots = read_robots(directory, condition.densest["run"])
     if not robots["arms"].map(len).any():
         return

@@ -13,7 +13,7 @@ from kswarms.analysis.findings import FINDINGS, NO_DATA, Finding, judge_all
 from kswarms.analysis.report.coverage import PlannedScenario, coverage, coverage_table
 from kswarms.analysis.report.page import Chapter, Part, Report
 from kswarms.analysis.report.provenance import directory_parts, libraries_part
-from kswarms.analysis.report.record_parts import PlacesOf, conflict_parts, recorded_conditions, robots_parts
+from kswarms.analysis.report.record_parts import ArenaOf, conflict_parts, recorded_conditions, robots_parts
 from kswarms.analysis.report.scenario_parts import (
     ARGOS,
     argos_parts,
@@ -40,16 +40,16 @@ _TITLES: Final = {
 """Titles of the chapters, in their order."""
 
 _PREFIXES: Final = ("fig-6.", "fig-7.", ARGOS)
-"""Chapters of scenarios, by the prefix of the scenario's id; all others belong to the chapter `other`."""
+"""Prefixes of scenario ids, which are keys of `_TITLES`; other scenarios are in the chapter `other`."""
 
 SourceTables = Mapping[str, tuple[str, Sequence[str]]]
-"""Title and scenarios of each table of the source, by id."""
+"""Title and scenarios of each table of the source, by table id."""
 
 Step = Callable[[], Iterable[tuple[str, Part]]]
-"""Returns parts, each with its chapter."""
+"""Returns pairs of a chapter (key of `_TITLES`) and a part."""
 
 Progress = Callable[[Sequence[Step]], Iterable[Step]]
-"""Yields steps one by one, as a progress bar does."""
+"""Iterates over the steps and may show progress."""
 
 
 def build_report(
@@ -57,7 +57,7 @@ def build_report(
     plan: Mapping[str, PlannedScenario] | None = None,
     source_tables: SourceTables | None = None,
     findings: Sequence[Finding] = FINDINGS,
-    places_of: PlacesOf = lambda *_: None,
+    arena_of: ArenaOf = lambda *_: None,
     progress: Progress = iter,
 ) -> Report:
     """Build the report on results.
@@ -65,17 +65,17 @@ def build_report(
     Parameters
     ----------
     source : Results, or as for `read_results`
-        Results directory of `kswarms run --out`, or outcomes of a sweep, which have no recorded tables.
+        Results directory of `kswarms run --out`, or a sweep, which has no recorded tables.
     plan : mapping of str to PlannedScenario, optional
         Scenarios by id, in their order in the report; other scenarios of the results follow.
     source_tables : mapping of str to (str, sequence of str), optional
-        Title and scenarios of each table of the source, by id.
+        Title and scenarios of each table of the source, by table id.
     findings : sequence of Finding
         Findings to judge.
-    places_of : callable
-        Arena of a game, drawn into the heat maps; by default unknown.
+    arena_of : callable
+        Returns the arena of a game, which the heat maps show (see `ArenaOf`); by default None.
     progress : callable
-        Iterator over the steps, such as a progress bar.
+        Wraps the iteration over the steps, such as a progress bar.
 
     Returns
     -------
@@ -105,7 +105,7 @@ def build_report(
         parts["provenance"] += directory_parts(directory)
         with_conflicts = recorded_conditions(directory, "conflicts", results.runs)
         with_robots = recorded_conditions(directory, "robots", results.runs)
-        steps += [partial(conflict_parts, directory, condition, places_of) for condition in with_conflicts]
+        steps += [partial(conflict_parts, directory, condition, arena_of) for condition in with_conflicts]
         steps += [partial(robots_parts, directory, condition) for condition in with_robots]
     for step in progress(steps):
         for chapter, part in step():
@@ -119,7 +119,7 @@ def build_report(
 
 
 def _verdicts(results: Results, findings: Sequence[Finding], planned: bool) -> Iterator[tuple[str, Part]]:
-    """Yield the verdicts; without a plan, only if there are results for any finding."""
+    """Yield the verdicts; without a plan, only if a finding has results."""
     verdicts = judge_all(results, findings)
     if planned or any(verdict.verdict != NO_DATA for verdict in verdicts):
         yield "verdicts", verdicts_part(verdicts)
@@ -135,8 +135,8 @@ def _scenario_steps(
     for scenario in dict.fromkeys([*plan, *results.runs["scenario"]]):
         if scenario in present:
             title = plan[scenario].title if scenario in plan else ""
-            words = (scenario, title, missing.get(scenario, ""), table_of.get(scenario, ""))
-            yield partial(_in_chapter, scenario, scenario_part, results, *words)
+            arguments = (scenario, title, missing.get(scenario, ""), table_of.get(scenario, ""))
+            yield partial(_in_chapter, scenario, scenario_part, results, *arguments)
 
 
 def _table_steps(results: Results, tables: SourceTables) -> Iterator[Step]:
@@ -145,12 +145,12 @@ def _table_steps(results: Results, tables: SourceTables) -> Iterator[Step]:
         learned = set(results.policies["scenario"])
         for table, (title, scenarios) in tables.items():
             if learned.intersection(scenarios):
-                name = table.replace("table-", "fig-")
+                name = table.replace("table-", "fig-")  # belongs to the chapter of these figures
                 yield partial(_in_chapter, name, table_part, results.policies, table, title, scenarios)
 
 
 def _in_chapter(name: str, make: Callable[..., Part], *arguments: object) -> list[tuple[str, Part]]:
-    """Make the part of a scenario or table, and return it with its chapter."""
+    """Call `make` for a scenario or table, and return the part with its chapter."""
     chapter = next((prefix for prefix in _PREFIXES if name.startswith(prefix)), "other")
     return [(chapter, make(*arguments))]
 
@@ -165,7 +165,7 @@ def _summary(results: Results, covered: pd.DataFrame) -> list[str]:
         f"{runs['run'].nunique():,} games with {span(seeds.min(), seeds.max())} seeds at each density."
         + (planned if len(covered) else ""),
         "Each figure is shown twice: with means only, as in the source, and with 95 % intervals and single "
-        "seeds. Its numbers are below it, beside published numbers if these are available.",
+        "seeds. The table below it has its numbers, and published numbers if available.",
     ]
 
 

@@ -11,17 +11,17 @@ from kswarms.analysis.figures import over_n
 from kswarms.analysis.figures.style import heading
 from kswarms.analysis.findings import Verdict
 from kswarms.analysis.measures.learned import learned_shares
-from kswarms.analysis.measures.quantities import TIME_SHARES, quantities
+from kswarms.analysis.measures.quantities import TIME_SHARES, shown_quantities
 from kswarms.analysis.report.page import Part
 from kswarms.analysis.results.runs import Results
 from kswarms.analysis.tables import fidelity, scores
 from kswarms.analysis.tables.learned import learned_table
-from kswarms.analysis.text_tables import NONE, TextTable
+from kswarms.analysis.text_tables import MISSING, TextTable
 
 ARGOS: Final = "argos-"
-"""Prefix of the scenarios that were also played in ARGoS."""
+"""Prefix of the ids of scenarios that were also played in ARGoS."""
 
-_SHOWN: Final = {
+_DESCRIPTIONS: Final = {
     ("pucks",): "pucks deposited by each swarm",
     ("sud",): "Swarm Utility Difference of S2",
     TIME_SHARES: "shares of time in conflict",
@@ -29,15 +29,15 @@ _SHOWN: Final = {
 
 
 def scenario_part(results: Results, scenario: str, title: str, missing: str, table: str) -> Part:
-    """Show a scenario: its figure without and with intervals, its numbers, and the learned policies.
+    """Return the part of a scenario: figures without and with intervals, numbers, and learned policies.
 
-    `missing` describes the missing games; `table` is the id of the source's table of the scenario's learned
-    policies. Both are empty for none.
+    `missing` describes the missing games, and `table` is the id of the source's table of the learned
+    policies; either may be empty.
     """
     part = Part(scenario, heading(scenario, title))
     if missing:
         part.text.append(f"Missing: {missing}.")
-    shown = _SHOWN[quantities(scenario)]
+    shown = _DESCRIPTIONS[shown_quantities(scenario)]
     frame = scores.scores(results.runs, scenario)
     curves = ", ".join(dict.fromkeys(frame["curve"]))
     chart = f"Line chart of the {shown} over the number of robots in all, for {curves}"
@@ -53,7 +53,7 @@ def scenario_part(results: Results, scenario: str, title: str, missing: str, tab
 
 
 def _add_learned(part: Part, runs: pd.DataFrame, cells: pd.DataFrame, title: str, table: str) -> None:
-    """Add the figure of the learned policies and, unless the source has one, their table."""
+    """Add the figure of the learned policies, and their table unless the source has one."""
     scenario = part.id
     name = table or f"{scenario}-learned"
     conditions = list(dict.fromkeys(runs.loc[runs["scenario"] == scenario, "condition"]))
@@ -70,21 +70,21 @@ def _add_learned(part: Part, runs: pd.DataFrame, cells: pd.DataFrame, title: str
 
 
 def table_part(policies: pd.DataFrame, table: str, title: str, scenarios: Sequence[str]) -> Part:
-    """Show a table of the source: measured numbers, and published ones if they are available."""
+    """Return the part of a table of the source: measured numbers, and published numbers if available."""
     cells = learned_shares(policies, scenarios)
     part = Part(table, f"{table}: {title}")
     absent = [name for name in scenarios if name not in set(cells["scenario"])]
     if absent:
         present = ", ".join(dict.fromkeys(cells["scenario"]))
-        part.text.append(f"Missing: {', '.join(absent)}; the numbers are of {present}.")
+        part.text.append(f"Missing: {', '.join(absent)}; the table shows {present}.")
     part.add_table(table, title, learned_table(cells), cells)
     return part
 
 
 def argos_parts(runs: pd.DataFrame) -> Iterator[tuple[str, Part]]:
-    """Yield the comparison with ARGoS and its chapter, if any run can be compared."""
+    """Yield the comparison with ARGoS and its chapter, if there are comparable runs."""
     try:
-        frame = fidelity.against_argos(runs)
+        frame = fidelity.compare_with_argos(runs)
     except InputError:
         return
     text = [
@@ -101,7 +101,7 @@ def argos_parts(runs: pd.DataFrame) -> Iterator[tuple[str, Part]]:
 
 
 def verdicts_part(verdicts: Sequence[Verdict]) -> Part:
-    """Show the verdict of each finding, and the number of findings with each verdict."""
+    """Return the part of the findings: the verdict of each, and the number of findings per verdict."""
     frame = pd.DataFrame([vars(verdict) for verdict in verdicts])
     counts = frame["verdict"].value_counts()
     header = ["finding", "verdict", "statement", "effect (interval)", "unit", "seeds", "note"]
@@ -123,7 +123,7 @@ def verdicts_part(verdicts: Sequence[Verdict]) -> Part:
 
 def _effect(verdict: Verdict) -> str:
     if verdict.effect is None:
-        return NONE
+        return MISSING
     low, high = ("…" if end is None else f"{end:.3g}" for end in (verdict.low, verdict.high))
     interval = "" if verdict.low is None and verdict.high is None else f" ({low} … {high})"
     return f"{verdict.effect:.3g}{interval}"

@@ -10,7 +10,7 @@ from kswarms.analysis.results.tables import read_table
 
 
 def recorded_runs(directory: Path, table: str) -> set[str]:
-    """Return the runs in a recorded table, ``conflicts`` or ``robots``; empty if there is no such table."""
+    """Return the runs in a recorded table, ``conflicts`` or ``robots``; empty if there is no table."""
     if not (directory / f"{table}.parquet").is_file():
         return set()
     return set(read_table(directory, table, ["run"])["run"])

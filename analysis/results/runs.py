@@ -1,4 +1,4 @@
-"""Reading outcomes: from a results directory (section 3.5 of the experiments) or from games of a script."""
+"""Reading outcomes from a results directory (section 3.5 of the experiments) or from games in memory."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,27 +30,27 @@ class Results:
 def read_results(
     source: str | Path | Sweep, scenario: str = "sweep", by: Sequence[str] | None = None
 ) -> Results:
-    """Read outcomes from a results directory, or from games of a script.
+    """Read outcomes from a results directory, or from games in memory.
 
     Parameters
     ----------
     source : Path, str, pandas.DataFrame, iterable of mappings, model, or iterable of models
         * Path or str: a directory that `kswarms run --out` wrote;
-        * the rows of `mesa.batch_run` with ``record="model"``, as a list or data frame; the last row of each
-          game is used. They hold no learned policies;
+        * the rows of `mesa.batch_run` with ``record="model"``, as a list or data frame, without learned
+          policies; the last row of each game is used;
         * `model.datacollector.get_model_vars_dataframe()` of one game;
         * models whose games have ended.
     scenario : str
-        Id of the scenario, for games of a script.
+        Id of the scenario, for games in memory.
     by : sequence of str, optional
-        Parameters that distinguish the conditions of a script; by default all that differ between its games,
-        other than ``n`` and ``seed``. The condition is named by their values: ``side=2.0, layout=ring``.
+        Parameters that define the conditions of games in memory; by default all parameters that differ
+        between games, except ``n`` and ``seed``. Conditions are named ``side=2.0, layout=ring``.
 
     Raises
     ------
     InputError
-        The directory cannot be read (`read_runs`, `read_policies`); a game has not ended or lacks model
-        reporters; or two games have the same condition, N and seed.
+        A table cannot be read; a game has not ended or lacks model reporters; or two games have the same
+        condition, N and seed.
 
     Examples
     --------
@@ -68,15 +68,16 @@ def read_results(
 
 
 def read_runs(directory: Path) -> pd.DataFrame:
-    """Read `runs.parquet`: one row for each run and swarm, at least one.
+    """Read `runs.parquet`: one row for each run and swarm.
 
-    Its columns are those of `kswarms.agents.common.columns` and further columns of the file.
+    Required columns are those of `kswarms.agents.common.columns`; the file may have more. `InputError` if it
+    is empty.
     """
     return _read_outcomes(directory, "runs")
 
 
 def read_policies(directory: Path) -> pd.DataFrame:
-    """Read `policies.parquet`: one row for each run, learning swarm, swarm learned about and action."""
+    """Read `policies.parquet`: one row for each run, learning swarm, opponent and action."""
     return _read_outcomes(directory, "policies")
 
 

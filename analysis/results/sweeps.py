@@ -1,4 +1,4 @@
-"""Tables of results from games of a script: rows of `mesa.batch_run`, samples of a DataCollector, models."""
+"""Tables of results from games in memory: rows of `mesa.batch_run`, samples of a DataCollector, models."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final, Protocol
@@ -26,14 +26,14 @@ class PlayedModel(Protocol):
     """Description of the game, with its ``duration`` (s)."""
 
     def results(self) -> list[dict[str, Any]]:
-        """Return one row per swarm: the columns of the table ``runs`` from ``swarm`` on."""
+        """Return one row per swarm, with the columns of the table ``runs`` from ``swarm`` to the last."""
 
     def policy_results(self) -> list[dict[str, Any]]:
-        """Return the rows of the table ``policies``, from ``swarm`` on; none if no swarm learned."""
+        """Return rows of the table ``policies`` from ``swarm`` to the last column; [] without learners."""
 
 
 Sweep = pd.DataFrame | Iterable[Mapping[str, Any]] | PlayedModel | Iterable[PlayedModel]
-"""Rows of `mesa.batch_run`, samples of one game, or one or more models."""
+"""Rows of `mesa.batch_run`, samples of one game, a model, or several models."""
 
 
 def tables_of_sweep(
@@ -44,7 +44,7 @@ def tables_of_sweep(
     games: dict[object, dict[str, Any]] = {}
     for item in _items(source):
         if isinstance(item, Mapping):
-            games[item.get("RunId", 0)] = dict(item)  # the last row of a game is its end
+            games[item.get("RunId", 0)] = dict(item)  # the last row of a game replaces earlier rows
         else:
             games[len(models)] = _end_of_game(item)
             models.append(item)
@@ -62,7 +62,7 @@ def tables_of_sweep(
     table = _typed(runs, "runs")
     if table.duplicated(["condition", "n", "seed", "swarm"]).any():
         raise InputError(
-            "by", by, "must be the parameters that differ: there are two games with one condition, N and seed"
+            "by", by, "must distinguish all games: two games have the same condition, N and seed"
         )
     return table, _typed(policies, "policies") if policies else None
 
@@ -74,7 +74,7 @@ def _items(source: Sweep) -> list[Any]:
 
 
 def _end_of_game(model: PlayedModel) -> dict[str, Any]:
-    """Return the end of a model's game in the form of a row of `mesa.batch_run`."""
+    """Return the outcome of a model as a row of `mesa.batch_run`."""
     swarms = model.results()
     game = {f"{name}_{swarm['swarm']}": swarm[name] for swarm in swarms for name in _OF_SWARM}
     game |= {"game_time": swarms[0]["duration"], "ended": swarms[0]["ended"], "seed": model.seed}
@@ -86,10 +86,10 @@ def _swarms(game: Mapping[str, Any]) -> list[dict[str, Any]]:
     if not {"game_time", "ended", "pucks_1"} <= game.keys():
         raise InputError("source", sorted(map(str, game)), 'must have model reporters (record="model")')
     if not game["ended"]:
-        raise InputError("ended", game["ended"], "must be given: a game was stopped before its end")
+        raise InputError("ended", game["ended"], "must be true: a game was stopped before its end")
     of_game = {"duration": game["game_time"], "ended": game["ended"]}
     swarms: list[dict[str, Any]] = []
-    # A data frame has NaN for the swarms that only other games have.
+    # A data frame has NaN for swarms that this game lacks.
     while pd.notna(game.get(f"pucks_{len(swarms) + 1}")):
         k = len(swarms) + 1
         swarms.append({"swarm": k} | {name: game[f"{name}_{k}"] for name in _OF_SWARM} | of_game)
@@ -106,7 +106,7 @@ def _conditions(games: Sequence[Mapping[str, Any]], by: Sequence[str] | None) ->
 
 
 def _text(value: Any) -> str:
-    """Return a parameter as text: a class or function by its name, a list by its elements."""
+    """Return a parameter as text: the name of a class or function, the elements of a list."""
     if isinstance(value, list | tuple):
         return ",".join(map(_text, value))
     return str(getattr(value, "__name__", value))

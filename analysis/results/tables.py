@@ -12,8 +12,8 @@ from pandas.api.types import is_numeric_dtype
 from kswarms.agents.common.columns import TABLES, column_names
 from kswarms.agents.common.errors import InputError
 
-# What Arrow and pandas raise for damaged files: mostly OSError and ValueError.
-_DAMAGE: Final = (OSError, ValueError, LookupError, TypeError, RuntimeError)
+# Errors of Arrow and pandas for damaged files.
+_FILE_ERRORS: Final = (OSError, ValueError, LookupError, TypeError, RuntimeError)
 _NAN_ALLOWED: Final = {"reward", "q", "time_sud", "time_sud_without"}
 
 
@@ -28,8 +28,8 @@ def read_table(
     Raises
     ------
     InputError
-        The directory or the file is missing or unreadable, or a column is missing, has gaps or is of another
-        kind.
+        The directory or the file is missing or unreadable; or a column is missing, has missing values or has
+        a wrong type.
     """
     if not directory.is_dir():
         raise InputError("results", str(directory), "must be a directory that `kswarms run` wrote")
@@ -50,7 +50,7 @@ def read_table(
 
 
 def check_columns(rows: pd.DataFrame, table: str, required: Sequence[str]) -> pd.DataFrame:
-    """Return rows whose columns have the kinds of the schema; refuse gaps and other kinds."""
+    """Return rows with the types of the schema; `InputError` for missing values and wrong types."""
     for name, kind, *_ in TABLES[table]:
         if name not in required:
             continue
@@ -73,5 +73,5 @@ def _readable(path: Path) -> Iterator[None]:
     """Re-raise the errors of a damaged file as `InputError`."""
     try:
         yield
-    except _DAMAGE as error:
+    except _FILE_ERRORS as error:
         raise InputError("results", str(path), "must be a readable Parquet file") from error

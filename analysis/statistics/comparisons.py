@@ -1,4 +1,4 @@
-"""Comparisons of two samples over seeds, correction for multiple tests, and the number of seeds needed."""
+"""Comparisons of two samples over seeds, corrections for multiple tests, and required numbers of seeds."""
 
 import math
 import warnings
@@ -40,7 +40,7 @@ class PairedComparison:
     cliffs_delta : float
         P(first > second) − P(first < second) over all pairs of values, −1 … 1.
     p_value : float
-        Two-sided, of the permutation test that swaps the two values of a seed; exact up to 13 seeds.
+        Two-sided p-value of the permutation test that swaps the values of a seed; exact up to 13 seeds.
     seeds : int
         Number of pairs.
     """
@@ -53,7 +53,7 @@ class PairedComparison:
 
 
 def compare_paired(first: ArrayLike, second: ArrayLike, confidence: float = CONFIDENCE) -> PairedComparison:
-    """Compare two samples of the same seeds (two or more), shape (seeds,), in the same order."""
+    """Compare two samples of the same seeds in the same order; shape (seeds,), at least two seeds."""
     one, other = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
     if one.ndim != 1 or one.shape != other.shape:
         raise InputError("second", other.shape, f"must have the shape {one.shape}, one value for each seed")
@@ -79,7 +79,7 @@ def compare_paired(first: ArrayLike, second: ArrayLike, confidence: float = CONF
 def compare_independent(first: ArrayLike, second: ArrayLike, confidence: float = CONFIDENCE) -> Interval:
     """Return the difference of the means of two independent samples, with Welch's interval.
 
-    The bounds are NaN if a sample holds one value; the interval has width 0 if neither sample varies.
+    The bounds are NaN if a sample has a single value. The interval has width 0 if both samples are constant.
     """
     one, other = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
     difference = float(one.mean() - other.mean())
@@ -88,13 +88,13 @@ def compare_independent(first: ArrayLike, second: ArrayLike, confidence: float =
     if np.ptp(one) == np.ptp(other) == 0:
         return Interval(difference, difference, difference)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # one of the samples may be constant
+        warnings.simplefilter("ignore", RuntimeWarning)  # a sample may be constant
         bounds = stats.ttest_ind(one, other, equal_var=False).confidence_interval(confidence)
     return Interval(difference, float(bounds.low), float(bounds.high))
 
 
 def effect_size(differences: ArrayLike) -> float:
-    """Return Cohen's d_z, mean / standard deviation; ±inf if all are equal and not 0, 0 if all are 0."""
+    """Return Cohen's d_z, mean / standard deviation; for equal values ±inf, or 0 if they are 0."""
     values = np.asarray(differences, dtype=np.float64)
     mean, deviation = float(values.mean()), float(values.std(ddof=1))
     if (values == values[0]).all():
@@ -122,8 +122,10 @@ def adjust_p_values(
     return [float(p) for p in corrected]
 
 
-def more_seeds(differences: ArrayLike, power: float = 0.8, confidence: float = CONFIDENCE) -> int | None:
-    """Return how many additional seeds a test needs to tell the mean difference from 0.
+def additional_seeds(
+    differences: ArrayLike, power: float = 0.8, confidence: float = CONFIDENCE
+) -> int | None:
+    """Return the number of additional seeds for a test to distinguish the mean difference from 0.
 
     The test is Student's, two-sided, at the level `confidence`. Its `power`, 0 … 1, is the probability that
     it rejects a mean of 0. Mean and standard deviation of `differences`, shape (seeds,), are taken as the
@@ -138,9 +140,9 @@ def more_seeds(differences: ArrayLike, power: float = 0.8, confidence: float = C
     test = TTestPower()
 
     def is_enough(count: int) -> bool:
-        # NaN for very large effects.
+        # The power is NaN for very large effects.
         return not test.power(size, count, 1 - confidence) < power
 
-    # The solver of statsmodels fails at large effects.
+    # Bisect, because the solver of statsmodels fails for large effects.
     more = bisect_left(range(seeds, _MAX_SEEDS), True, key=is_enough)
     return more if seeds + more < _MAX_SEEDS else None

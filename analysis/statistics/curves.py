@@ -1,7 +1,7 @@
 """Statistics of curves over the number of robots: crossings and trend.
 
-A curve is the mean over the seeds at each density, with straight lines between densities. Samples have the
-shape (seeds, densities): a resample draws a seed with its values at all densities.
+A curve is the mean over the seeds at each density, linear between densities. Samples have the shape (seeds,
+densities); resampling draws seeds with their values at all densities.
 """
 
 from collections.abc import Sequence
@@ -18,23 +18,23 @@ from kswarms.analysis.statistics.intervals import CONFIDENCE, Interval, Values, 
 
 @dataclass(frozen=True)
 class Overtaking:
-    """Where one curve overtakes another.
+    """Crossings of two curves, and the last of them.
 
     Attributes
     ----------
     crossings : tuple of float
-        Every N at which the difference of the mean curves changes sign, in either direction.
-    for_good : Interval
-        The N from which the difference stays above 0 up to the last density. −inf: it is above 0 at every
-        density. +inf: it is not above 0 at the last density.
+        Each N where the difference of the mean curves changes sign, in either direction.
+    last_crossing : Interval
+        N from which the difference is above 0 up to the last density; −inf if it is above 0 at every density,
+        +inf if it is not above 0 at the last density.
     """
 
     crossings: tuple[float, ...]
-    for_good: Interval
+    last_crossing: Interval
 
 
 def crossings(densities: ArrayLike, differences: ArrayLike) -> tuple[float, ...]:
-    """Return where a curve changes sign, in ascending order.
+    """Return each N where a curve changes sign, in ascending order.
 
     Both arguments have the shape (densities,): N, ascending, and the value there, linear in between. A
     stretch of zeros between different signs is one crossing in its middle; one between equal signs is none.
@@ -69,7 +69,7 @@ def overtaking(
 def rank_correlation_with_n(
     densities: Sequence[int], samples: ArrayLike, confidence: float = CONFIDENCE
 ) -> Interval:
-    """Return Spearman's rank correlation of a mean curve with N, 0 for a constant curve, with its interval.
+    """Return Spearman's rank correlation of a mean curve with N, with its interval; 0 for a constant curve.
 
     `samples`, shape (seeds, densities), are the values of the curve.
     """
@@ -91,9 +91,9 @@ def spearman(first: Values, second: Values) -> Values:
 
 
 def _last_rise(n: Values, curves: Values) -> Values:
-    """Return where each curve, shape (resamples, densities), rises above 0 for the last time."""
+    """Return the N where each curve last rises above 0; `curves` has the shape (resamples, densities)."""
     above = curves > 0
-    # Number of densities at the end of the curve that are all above 0.
+    # Number of consecutive densities above 0 at the end of each curve.
     ahead = np.cumprod(above[:, ::-1], axis=1).sum(axis=1)
     rows = np.arange(len(curves))
     right = np.clip(len(n) - ahead, 1, len(n) - 1)

@@ -1,1 +1,1 @@
-"""Tables of results, beside published numbers."""
+"""Tables of results, with published numbers."""

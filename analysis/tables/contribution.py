@@ -1,4 +1,4 @@
-"""Contributions as text: means of robots, rank correlations, and the time that an absent robot frees."""
+"""Text tables of contributions: means of robots, rank correlations, and freed time."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -11,9 +11,9 @@ from kswarms.analysis.text_tables import with_interval
 
 
 def contribution_tables(rows: pd.DataFrame) -> list[tuple[str, list[list[str]]]]:
-    """Return the tables that `kswarms contribution` prints, from rows of `of_question`.
+    """Return the tables that `kswarms contribution` prints, from rows of `select_contributions`.
 
-    A table is its title and its rows of cells; the first row is the header.
+    Each table is a pair of a title and rows of cells; the first row is the header.
     """
     seeds = rows["seed"].nunique()
     by_robot = [["robot", "swarm", "SUD (pucks)", "SUD (s)", "reward (s)", "reward per second"]]
@@ -26,16 +26,16 @@ def contribution_tables(rows: pd.DataFrame) -> list[tuple[str, list[list[str]]]]
         cells = (estimate_text(found, name) for name in ("robots", "games"))
         ranks.append([f"S{found['swarm']}", contribution.MEASURES[found["measure"]], *cells])
     freed = [["robot of", "others", "T(a)", "without", "T(p)", "without", "T(a) against it", "share freed"]]
-    for found in contribution.assumption(rows).to_dict("records"):
+    for found in contribution.freed_time(rows).to_dict("records"):
         times = (f"{found[name]:.1f}" for name in ("t_a", "t_a_without", "t_p", "t_p_without", "met"))
         freed.append([f"S{found['swarm']}", found["others"], *times, estimate_text(found, "share")])
     return [
-        (f"contribution of each robot, and its own reward: {describe_seeds(seeds, seeds)}", by_robot),
+        (f"contribution and reward of each robot: {describe_seeds(seeds, seeds)}", by_robot),
         ("rank correlation of reward and contribution (95 % interval)", ranks),
-        ("seconds of the others in a game, with the robot and without it", freed),
+        ("seconds of other robots in a game, with and without the robot", freed),
     ]
 
 
 def estimate_text(found: Mapping[Any, Any], name: str, form: str = ".2f") -> str:
-    """Return a number with its interval, from the columns `name`, ``…_low`` and ``…_high``."""
+    """Format a number with its interval, from the columns `name`, ``…_low`` and ``…_high``."""
     return with_interval(found[name], found[f"{name}_low"], found[f"{name}_high"], form)

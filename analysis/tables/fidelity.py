@@ -13,33 +13,33 @@ from kswarms.agents.common.errors import InputError
 from kswarms.agents.theory.times import share_of_time
 from kswarms.analysis.results.published import argos_fixed_policies
 from kswarms.analysis.statistics.comparisons import compare_independent
-from kswarms.analysis.text_tables import NONE, TextTable, with_interval
+from kswarms.analysis.text_tables import MISSING, TextTable, with_interval
 
 SHARE_TOLERANCE = 0.06
 SCORE_TOLERANCE = 0.2
 PUCK_TOLERANCE = 1.5
 
 _ROW = ["scenario", "n", "swarm"]
-# Absorbs rounding errors: means of counts over 10 and 20 seeds can equal a tolerance.
+# Absorbs rounding errors: a difference of two means can equal a tolerance.
 _ROUNDING = 1e-9
 
 
-def against_argos(runs: pd.DataFrame) -> pd.DataFrame:
+def compare_with_argos(runs: pd.DataFrame) -> pd.DataFrame:
     """Compare runs with the ARGoS games of the same policies and density.
 
-    Rows of `runs.parquet` without such ARGoS games are left out; `InputError` if none remains.
+    Rows of `runs.parquet` without such ARGoS games are skipped; `InputError` if no row remains.
 
     Returns
     -------
     pandas.DataFrame
-        One row for each common `scenario` (str), `n`, `swarm` (int64), sorted by these, with
+        One row for each common `scenario` (str), `n`, `swarm` (int64), sorted by these. Further columns:
 
         * `seeds_ours`, `seeds_theirs` (int64): numbers of games;
         * `score_ours`, `score_theirs`, `score_difference` (float64, pucks): means, and ours − theirs, with
           the 95 % Welch interval `score_low`, `score_high`, NaN for a single game on either side;
         * `score_relative` (float64): difference / theirs, NaN if theirs is 0;
         * `share_ours`, `share_theirs`, `share_difference` (float64): mean shares of time in conflict;
-        * `score_fits`, `share_fits` (bool): whether they agree.
+        * `score_fits`, `share_fits` (bool): whether scores and shares agree.
     """
     theirs = _argos_games()
     by_swarm = dict(list(theirs.groupby(_ROW)))
@@ -58,7 +58,7 @@ def against_argos(runs: pd.DataFrame) -> pd.DataFrame:
 
 
 def _compare(ours: pd.DataFrame, theirs: pd.DataFrame) -> dict[str, Any]:
-    """Return a row of `against_argos` for the games of one swarm."""
+    """Return a row of `compare_with_argos` for the games of one swarm."""
     score = compare_independent(ours["score"], theirs["score"])
     theirs_score, theirs_share = theirs["score"].mean(), theirs["share"].mean()
     share_difference = ours["share"].mean() - theirs_share
@@ -81,12 +81,12 @@ def _compare(ours: pd.DataFrame, theirs: pd.DataFrame) -> dict[str, Any]:
 
 
 def argos_table(frame: pd.DataFrame) -> TextTable:
-    """Return the rows of `against_argos` as text."""
+    """Return `compare_with_argos` as a text table."""
     header = ["scenario", "N", "swarm", "pucks", "ARGoS", "difference (95 % interval)", "relative", "fits"]
     header += ["time in conflict", "ARGoS", "difference", "fits"]
     rows = []
     for row in frame.to_dict("records"):
-        relative = NONE if pd.isna(row["score_relative"]) else f"{100 * row['score_relative']:+.0f} %"
+        relative = MISSING if pd.isna(row["score_relative"]) else f"{100 * row['score_relative']:+.0f} %"
         difference = with_interval(row["score_difference"], row["score_low"], row["score_high"], "+.1f")
         scores = [f"{row[name]:.1f}" for name in ("score_ours", "score_theirs")]
         shares = [f"{row['share_ours']:.3f}", f"{row['share_theirs']:.3f}", f"{row['share_difference']:+.3f}"]
@@ -97,7 +97,7 @@ def argos_table(frame: pd.DataFrame) -> TextTable:
 
 
 def markdown_table(frame: pd.DataFrame) -> str:
-    """Return the rows of `against_argos` in Markdown, with misfits in bold."""
+    """Return `compare_with_argos` in Markdown, with disagreements in bold."""
     return argos_table(frame).to_markdown().replace("| no |", "| **no** |")
 
 

@@ -1,4 +1,4 @@
-"""Tables of learned policies, with the published numbers."""
+"""Tables of learned policies, with published numbers."""
 
 from collections.abc import Sequence
 

@@ -1,34 +1,34 @@
-"""Tables of the means over the seeds behind the figure of a scenario."""
+"""Tables of the means that the figure of a scenario shows."""
 
 import pandas as pd
 
 from kswarms.analysis.measures.quantities import (
     TIME_SHARES,
-    of_scenario,
-    quantities,
+    add_time_shares,
+    scenario_rows,
+    shown_quantities,
     split_curves,
-    with_time_shares,
 )
-from kswarms.analysis.statistics.means import describe_seeds, with_intervals
+from kswarms.analysis.statistics.means import describe_seeds, mean_by_group
 from kswarms.analysis.text_tables import TextTable, with_interval
 
 _UNITS = {"pucks": "pucks deposited by the swarm", "sud": "SUD of S2 (pucks)"}
 
 
 def scores(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
-    """Return the numbers behind the figure of a scenario (`kswarms.analysis.figures.over_n.figure_of`).
+    """Return the numbers of the figure of a scenario (`kswarms.analysis.figures.over_n.figure_of`).
 
     There is one row for each `quantity` (str: ``pucks``, ``sud`` or a kind of time share), `curve` (str: name
-    in the legend) and `n`, with `seeds`, `mean`, `low` and `high` as in `with_intervals`.
+    in the legend) and `n`, with `seeds`, `mean`, `low` and `high` as in `mean_by_group`.
     """
-    rows = of_scenario(runs, scenario)
-    shown = quantities(scenario)
+    rows = scenario_rows(runs, scenario)
+    shown = shown_quantities(scenario)
     if shown == ("sud",):
         rows = rows[rows["swarm"] == 2]
     elif shown == TIME_SHARES:
-        rows = with_time_shares(rows)
+        rows = add_time_shares(rows)
     parts = [
-        with_intervals(curve.rows, ["n"], quantity).assign(quantity=quantity, curve=curve.label)
+        mean_by_group(curve.rows, ["n"], quantity).assign(quantity=quantity, curve=curve.label)
         for quantity in shown
         for curve in split_curves(rows)
     ]
@@ -36,7 +36,7 @@ def scores(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
 
 
 def scores_table(frame: pd.DataFrame) -> TextTable:
-    """Return `scores` as text: a row for each N, a column for each curve and quantity."""
+    """Return `scores` as a text table: a row for each N, a column for each curve and quantity."""
     densities = sorted(set(frame["n"]))
     several = frame["quantity"].nunique() > 1
     header, columns = ["N"], [[str(n) for n in densities]]

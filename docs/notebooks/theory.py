@@ -23,7 +23,12 @@ from kswarms import Game, GameModel, Swarm
 from kswarms.agents.theory.games import NormalForm, is_pairwise_zero_sum, polymatrix, zero_sum
 from kswarms.agents.theory.times import Interaction, pair_utility, time_utility
 from kswarms.analysis.figures.game_forms import draw_polymatrix
-from kswarms.analysis.measures.contribution import assumption, mean_contributions, of_question, time_sud
+from kswarms.analysis.measures.contribution import (
+    freed_time,
+    mean_contributions,
+    select_contributions,
+    time_sud,
+)
 from kswarms.analysis.measures.utilities import robot_utilities, utilities_by_swarm
 from kswarms.scenarios.contribution.games import contributions, robots_of
 
@@ -93,7 +98,7 @@ axes.set(xlabel="utility of the robot, U (s)", ylabel="Wonderful Life Utility, W
 
 # %%
 rows = contributions(game, robots_of(game, "8,9"), range(6), label=("avoid-attack", ""), time_sud=time_sud)
-question = of_question(pd.DataFrame(rows))
+question = select_contributions(pd.DataFrame(rows))
 question[["seed", "robot", "sud", "sud_without", "pucks", "reward"]].head(4).round(2)
 
 # %% [markdown]
@@ -112,4 +117,4 @@ means[["robot", "pucks", "pucks_low", "pucks_high", "reward", "reward_low", "rew
 # if other conflicts take the place of these conflicts.
 
 # %%
-assumption(question)[["others", "t_a", "t_a_without", "met", "share", "share_low", "share_high"]].round(2)
+freed_time(question)[["others", "t_a", "t_a_without", "met", "share", "share_low", "share_high"]].round(2)

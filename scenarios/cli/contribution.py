@@ -54,7 +54,7 @@ def contribution(
     name = names[0] if condition is None else condition
     game = scenario.game(name, n)
     from kswarms.analysis.figures.contribution import write_contribution_figure
-    from kswarms.analysis.measures.contribution import of_question, time_sud
+    from kswarms.analysis.measures.contribution import select_contributions, time_sud
     from kswarms.analysis.results.records import read_contributions
     from kswarms.analysis.tables.contribution import contribution_tables
     from kswarms.scenarios.contribution.games import RECORD, contributions, robots_of
@@ -75,6 +75,6 @@ def contribution(
     question: dict[str, Any] = {"condition": name, "n": n, "absent_from": absent_from}
     figure = write_contribution_figure(out, scenario.title, scenario=scenario.id, **question)
     typer.echo(f"figure: {figure}")
-    rows = of_question(read_contributions(out), scenario=scenario.id, **question)
+    rows = select_contributions(read_contributions(out), scenario=scenario.id, **question)
     for heading, (header, *lines) in contribution_tables(rows):
         print_table(heading, header, lines)

@@ -46,7 +46,7 @@ def report(
         for name, each in CATALOGUE.items()
     }
     built = build_report(
-        directory, plan, TABLES, findings=(*FINDINGS, *own), places_of=_arena, progress=_progress
+        directory, plan, TABLES, findings=(*FINDINGS, *own), arena_of=_arena, progress=_progress
     )
     if files is not None:
         typer.echo(f"files:  {files} ({built.write_files(files)} files)")

@@ -23,7 +23,7 @@ def test_it_writes_a_table_and_a_figure_and_prints_the_results(capsys: pytest.Ca
     assert [(row["seed"], row["robot"]) for row in rows] == expected
     assert {row["absent_from"] for row in rows} == {"learning"}
     assert all(row["time_sud"] == row["time_sud"] != row["time_sud_without"] for row in rows)
-    for heading in ("contribution of each robot", "rank correlation", "seconds of the others"):
+    for heading in ("contribution and reward of each robot", "rank correlation", "seconds of other robots"):
         assert heading in out
     assert "mean of S2" in out
 

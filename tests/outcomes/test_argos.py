@@ -6,7 +6,7 @@ from typing import Final
 import pandas as pd
 import pytest
 
-from kswarms.analysis.tables.fidelity import against_argos
+from kswarms.analysis.tables.fidelity import compare_with_argos
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.catalogue.argos import DENSITIES
 from kswarms.scenarios.description.scenario import Scenario
@@ -24,7 +24,7 @@ UNEQUAL: Final = "argos-avoid-attack"
 def compared(scenarios: Iterable[Scenario], densities: tuple[int, ...], seeds: int) -> pd.DataFrame:
     """Play scenarios and compare them with ARGoS."""
     planned = [scenario.replace(densities=densities, seeds=seeds) for scenario in scenarios]
-    return against_argos(result_table(play_all(expand(planned))))
+    return compare_with_argos(result_table(play_all(expand(planned))))
 
 
 @pytest.fixture(

@@ -1,4 +1,4 @@
-"""Published numbers, as package data, that the simulator is compared with.
+"""Published numbers for comparison with the simulator, as package data.
 
 `table-6.1.csv` and `table-6.2.csv` are tables of the thesis; `argos_fixed_policies.csv` holds games of the
 same controller in ARGoS 3 (time-limited, 600 s, ten seeds at each density).
@@ -9,31 +9,31 @@ from importlib.resources import files
 import pandas as pd
 
 
-def _table(name: str) -> pd.DataFrame:
+def _read_csv(name: str) -> pd.DataFrame:
     with files(__name__).joinpath(name).open("rb") as source:
         return pd.read_csv(source)
 
 
 def table_6_1() -> pd.DataFrame:
-    """Table 6.1: robots that learned to attack the other swarm, for each density.
+    """Return Table 6.1: robots that learned to attack the other swarm, for each density.
 
     Ten rows. `n` (int64): robots in all; `fig_6_4a_attack_pct`, `fig_6_4b_attack_pct` (float64): percent of
     the learning swarm's robots, against an avoiding (6.4a) and an attacking (6.4b) swarm.
     """
-    return _table("table-6.1.csv")
+    return _read_csv("table-6.1.csv")
 
 
 def table_6_2() -> pd.DataFrame:
-    """Table 6.2: robots that learned with both bandits (Fig. 6.8), for each density.
+    """Return Table 6.2: robots that learned with both bandits (Fig. 6.8), for each density.
 
     Ten rows. `n` (int64): robots in all; `inter_attack_pct`, `intra_avoid_pct` (float64): percent of the
     learning swarm's robots that learned to fight the other swarm, and to flee within their own.
     """
-    return _table("table-6.2.csv")
+    return _read_csv("table-6.2.csv")
 
 
 def learned_percentages() -> pd.DataFrame:
-    """Tables 6.1 and 6.2 in one form: percentages of the learning swarm.
+    """Return Tables 6.1 and 6.2 as one table.
 
     Forty rows. `scenario` (str): figure of the table; `learned` (str): ``attack`` (the other swarm) or
     ``flight within`` (the own swarm); `n` (int64): robots in all; `published` (float64): percent of the
@@ -53,11 +53,11 @@ def learned_percentages() -> pd.DataFrame:
 
 
 def argos_fixed_policies() -> pd.DataFrame:
-    """Games of two swarms of fixed policies in ARGoS 3, one row for each game.
+    """Return the games of two swarms with fixed policies in ARGoS 3.
 
     150 rows. `s1_policy`, `s2_policy` (str); `n` (int64): robots in all; `seed` (int64): 1 … 10; and for each
     swarm k = 1, 2 `score1`, `score2` (int64): pucks; `ta_intra1` …, `ta_inter1` …, `tp1` … (float64):
     robot-seconds in conflicts within the own swarm, in conflicts with the other swarm, and in the program. In
     avoid against attack S1 avoids and S2 attacks.
     """
-    return _table("argos_fixed_policies.csv")
+    return _read_csv("argos_fixed_policies.csv")

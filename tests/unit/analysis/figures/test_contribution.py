@@ -8,7 +8,7 @@ import pytest
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.figures.contribution import contribution_figure, write_contribution_figure
-from kswarms.analysis.measures.contribution import mean_contributions, of_question
+from kswarms.analysis.measures.contribution import mean_contributions, select_contributions
 from kswarms.analysis.results.records import read_contributions
 from kswarms.analysis.tables.contribution import contribution_tables
 from tests.helpers.contribution_rows import ROBOTS, SEEDS, contribution_rows, noise
@@ -19,7 +19,7 @@ def rows_of_two_swarms() -> pd.DataFrame:
     better = np.arange(ROBOTS)
     first = contribution_rows(swarm=1, policy="attack", time_sud=noise(), reward=3 + noise(0.1, 1), sud=2)
     second = contribution_rows(swarm=2, time_sud=better + noise(seed=2), reward=better + noise(0.1, 3))
-    return of_question(pd.concat([first, second]))
+    return select_contributions(pd.concat([first, second]))
 
 
 def test_the_scatter_shows_each_robot_where_its_means_are() -> None:
@@ -44,7 +44,7 @@ def test_the_tables_name_robots_swarms_and_intervals() -> None:
     assert [line[:2] for line in ranks[1:]] == [["S1", "pucks"], ["S1", "s"], ["S2", "pucks"], ["S2", "s"]]
     assert ranks[1][2:] == ["–", "–"]
     assert freed[1] == ["S1", "mates", "100.0", "100.0", "100.0", "100.0", "100.0", "0.00 (0.00 … 0.00)"]
-    assert contribution_tables(of_question(contribution_rows(seeds=1)))[0][1][1][2] == "0.00"
+    assert contribution_tables(select_contributions(contribution_rows(seeds=1)))[0][1][1][2] == "0.00"
 
 
 def test_a_figure_is_written_from_the_table(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ def test_choices_and_q_are_drawn_with_a_panel_for_each_bandit() -> None:
     assert figure.axes[0].get_ylabel() == "Q (reward per second)"
     within = learning_conflicts().assign(q=0.3)
     titles = [axes.get_title() for axes in values_figure(within).axes]
-    assert titles == ["S1 against S2", "S2 against S1", "S2 within itself"]
+    assert titles == ["S1 against S2", "S2 against S1", "within S2"]
 
 
 def test_three_actions_are_all_drawn() -> None:

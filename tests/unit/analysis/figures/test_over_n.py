@@ -16,7 +16,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.colours import SWARM_COLOURS
 from kswarms.analysis.figures.files import encode
 from kswarms.analysis.figures.over_n import figure_of, pucks_over_n, sud_over_n, time_shares, write_figures
-from kswarms.analysis.measures.quantities import TIME_SHARES, quantities
+from kswarms.analysis.measures.quantities import TIME_SHARES, shown_quantities
 from tests.helpers.legends import legend_texts
 from tests.helpers.result_rows import DENSITIES, runs_of
 
@@ -210,7 +210,7 @@ def test_the_figure_of_a_scenario_shows_the_quantity_of_the_source(
         figure = figure_of(runs_of(scenario), scenario, "its title")
         assert figure.axes[0].get_ylabel().startswith(label)
         assert figure.get_suptitle() == f"{scenario}: its title"
-        assert quantities(scenario) == shown
+        assert shown_quantities(scenario) == shown
 
 
 def test_without_detail_a_figure_shows_only_means() -> None:

@@ -56,6 +56,6 @@ def test_conflicts_of_a_datacollector_can_be_drawn(model: ForagingModel) -> None
         networks.network_figure(network),
         emergence.choices_figure(conflicts),
         emergence.values_figure(conflicts),
-        maps.heat_map_figure(conflicts, places=model.arena),
+        maps.heat_map_figure(conflicts, arena=model.arena),
     )
     assert all(encode(figure, "png").startswith(b"\x89PNG") for figure in figures)

@@ -86,18 +86,18 @@ def test_a_finding_can_be_changed() -> None:
         (TREND + 'measure = "speed" }', rf"quantity\.measure='speed': must be one of {', '.join(UNITS)}"),
         (
             TREND + 'measure = "learned_attack" }',
-            r"quantity\.swarm=None: must be given: learned_attack is of one swarm",
+            r"quantity\.swarm=None: must be given: learned_attack is a measure of one swarm",
         ),
-        (TREND + 'measure = "sud" }', r"quantity\.swarm=None: must be given: sud does not add up"),
-        (TREND + "opponent = 2 }", r"quantity\.opponent=2: must be left out: only learned_attack has one"),
+        (TREND + 'measure = "sud" }', r"quantity\.swarm=None: must be given: sud has no sum"),
+        (TREND + "opponent = 2 }", r"quantity\.opponent=2: must be omitted: only learned_attack has"),
         (
             HEAD + COMPARE.replace('"b"', '"b", measure = "time_inter"'),
-            r"right\.measure='time_inter': must be in pucks, as the left is",
+            r"right\.measure='time_inter': must have the unit of left, pucks",
         ),
         (HEAD + OVERTAKE.replace("40", "20"), r"between=\[30, 20\]: must ascend"),
         (
             HEAD + OVERTAKE.replace('"b"', '"b", measure = "time_inter"'),
-            r"behind\.measure='time_inter': must be in pucks, as ahead is",
+            r"behind\.measure='time_inter': must have the unit of ahead, pucks",
         ),
         (
             HEAD + 'kind = "agree with the published table"\nmargin = 5\ncells = [{ scenario = "fig-6.1a" }]',

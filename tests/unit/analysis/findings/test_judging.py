@@ -153,7 +153,7 @@ def test_agreement_with_the_published_table_has_each_verdict(off: float, expecte
         (more(left=Quantity(scenario="duel", condition="x", swarm=3)), "no runs of duel condition 'x' S3"),
         (more(densities=(26, 46)), "no runs at N = 26, 46"),
         (Overtake(ahead=S2, behind=S1, between=(30, 36)), "no runs at N = 36"),
-        (Peak(quantity=S2, densities=(6, 16)), "N = 6, 16: a rise and a fall need three densities"),
+        (Peak(quantity=S2, densities=(6, 16)), "N = 6, 16: rise and fall need three densities"),
         (Trend(quantity=S2, densities=(6, 16)), "N = 6, 16: a trend needs three densities"),
         (Share(quantity=WITHIN, above=99), "no runs of fig-6.8 S2 (learned_flight_within)"),
         (Agreement(cells=(LEARNED,), margin=5), "no runs of fig-6.4a S2 (learned_attack)"),
@@ -179,8 +179,8 @@ def test_scenarios_played_at_different_densities_cannot_be_compared() -> None:
 @pytest.mark.parametrize(
     ("over", "note"),
     [
-        ("each N", "no seed on both sides at N = 6, 16, 30, 40, 50"),
-        ("mean over N", "no seed at all of N = 6, 16, 30, 40, 50"),
+        ("each N", "no seed with both sides at N = 6, 16, 30, 40, 50"),
+        ("mean over N", "no seed with all of N = 6, 16, 30, 40, 50"),
     ],
 )
 def test_different_seeds_are_not_paired(over: str, note: str) -> None:

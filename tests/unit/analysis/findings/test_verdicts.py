@@ -18,7 +18,7 @@ def test_a_verdict_at_every_density_shows_the_deciding_one() -> None:
     assert verdict.low is not None
     assert verdict.high is not None
     assert 0 < verdict.low < 3 < verdict.high
-    assert verdict.note == "N = 6, 16, 30, 40, 50; numbers of N = 16, where the claim is weakest"
+    assert verdict.note == "N = 6, 16, 30, 40, 50; effect at N = 16, where the claim is weakest"
     failed = verdict_on(more(), duel([5, -4, 5, -9, 5]))
     assert failed.effect == pytest.approx(-9)
     assert failed.note.endswith("false at N = 16, 40")

@@ -12,11 +12,11 @@ from scipy import stats
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.figures.contribution import contribution_figure
 from kswarms.analysis.measures.contribution import (
-    assumption,
+    freed_time,
     mean_contributions,
-    measures_of,
-    of_question,
+    measures_with_values,
     rank_correlations,
+    select_contributions,
     time_sud,
 )
 from kswarms.analysis.measures.utilities import robot_utilities, utilities_by_swarm
@@ -27,25 +27,25 @@ from tests.helpers.contribution_rows import ROBOTS, SEEDS, contribution_rows, no
 
 def test_a_contribution_is_sud_less_sud_without() -> None:
     suds = {"sud": 7, "sud_without": [[3] * 4 + [9] * 4], "time_sud": 1.5, "time_sud_without": 2.0}
-    rows = of_question(contribution_rows(**suds))
+    rows = select_contributions(contribution_rows(**suds))
     assert set(rows["pucks"]) == {4.0, -2.0}
     assert set(rows["time"]) == {-0.5}
     assert set(rows["reward_rate"]) == {0.1}
-    assert of_question(contribution_rows(reward_time=0.0))["reward_rate"].isna().all()
+    assert select_contributions(contribution_rows(reward_time=0.0))["reward_rate"].isna().all()
 
 
 def test_several_questions_must_be_told_apart() -> None:
     several = pd.concat([contribution_rows(), contribution_rows(n=26, sud=5)])
-    assert set(of_question(several, n=26)["pucks"]) == {5.0}
+    assert set(select_contributions(several, n=26)["pucks"]) == {5.0}
     with pytest.raises(InputError, match=r"n=None: must be one of 16, 26"):
-        of_question(several)
+        select_contributions(several)
     with pytest.raises(InputError, match=r"scenario='fig-6.1': must be one of 'fig-6.4b'"):
-        of_question(several, n=26, scenario="fig-6.1")
+        select_contributions(several, n=26, scenario="fig-6.1")
 
 
 def test_means_have_bootstrap_intervals_over_the_seeds() -> None:
     contribution = noise(5.0) + np.arange(ROBOTS)
-    found = mean_contributions(of_question(contribution_rows(time_sud=contribution)))
+    found = mean_contributions(select_contributions(contribution_rows(time_sud=contribution)))
     assert found["robot"].tolist() == [*range(20, 28), -1]
     for k, row in enumerate(found.to_dict("records")):
         sample = contribution[:, k] if k < ROBOTS else contribution.mean(axis=1)
@@ -57,19 +57,19 @@ def test_means_have_bootstrap_intervals_over_the_seeds() -> None:
 
 def test_each_swarm_has_its_own_mean_robot() -> None:
     both = pd.concat([contribution_rows(swarm=1, sud=3), contribution_rows(swarm=2, sud=-1)])
-    found = mean_contributions(of_question(both))
+    found = mean_contributions(select_contributions(both))
     assert found[found["robot"] < 0][["swarm", "pucks"]].to_numpy().tolist() == [[1, 3.0], [2, -1.0]]
 
 
 @pytest.mark.parametrize("seeds", [1, 5])
 def test_fewer_than_six_seeds_have_no_interval(seeds: int) -> None:
     sud = noise(shape=(seeds, ROBOTS))
-    rows = of_question(contribution_rows(seeds=seeds, time_sud=sud, reward=np.arange(8.0)))
+    rows = select_contributions(contribution_rows(seeds=seeds, time_sud=sud, reward=np.arange(8.0)))
     assert mean_contributions(rows)[["time_low", "time_high", "reward_low"]].isna().all(axis=None)
     found = rank_correlations(rows).set_index("measure").loc["time"]
     assert not np.isnan(found["robots"])
     assert np.isnan(found[["robots_low", "robots_high", "games_low"]].tolist()).all()
-    assert assumption(rows)["share_low"].isna().all()
+    assert freed_time(rows)["share_low"].isna().all()
 
 
 @settings(max_examples=30)
@@ -89,7 +89,7 @@ def test_spearman_agrees_with_scipy(seed: int, values: int, robots: int) -> None
 def test_rewards_in_the_order_of_contributions_have_rank_correlation_1(sign: int) -> None:
     true = np.exp(np.arange(ROBOTS) / 2)
     reward = sign * true**3 + noise(0.1, seed=1)
-    rows = of_question(contribution_rows(time_sud=true + noise(0.1), reward=reward))
+    rows = select_contributions(contribution_rows(time_sud=true + noise(0.1), reward=reward))
     found = rank_correlations(rows).set_index("measure").loc["time"]
     assert found["robots"] == found["robots_low"] == found["robots_high"] == pytest.approx(sign)
     assert sign * found["games"] > 0.9
@@ -101,7 +101,7 @@ def test_a_correlation_within_games_is_not_one_of_the_means() -> None:
     chance = noise(1.0)
     chance -= chance.mean(axis=0)  # all means over the seeds are 0
     sud, reward = chance + noise(0.01, seed=3), chance + noise(0.01, seed=2)
-    rows = of_question(contribution_rows(time_sud=sud, reward=reward))
+    rows = select_contributions(contribution_rows(time_sud=sud, reward=reward))
     found = rank_correlations(rows).set_index("measure").loc["time"]
     assert found["games"] > 0.95
     assert abs(found["robots"]) < 0.9  # the means are noise
@@ -112,7 +112,11 @@ def test_intervals_of_independent_quantities_contain_0() -> None:
     missed = {"robots": 0, "games": 0}
     for repetition in range(80):
         draws = {"time_sud": noise(3.0, 2 * repetition), "reward": noise(2.0, 2 * repetition + 1)}
-        found = rank_correlations(of_question(contribution_rows(**draws))).set_index("measure").loc["time"]
+        found = (
+            rank_correlations(select_contributions(contribution_rows(**draws)))
+            .set_index("measure")
+            .loc["time"]
+        )
         for name in missed:
             missed[name] += not found[f"{name}_low"] <= 0 <= found[f"{name}_high"]
     # More than 11 misses of 80 have a probability of 0.1 %; without any, the intervals would be too wide.
@@ -121,15 +125,15 @@ def test_intervals_of_independent_quantities_contain_0() -> None:
 
 
 def test_rank_correlations_need_three_different_robots() -> None:
-    assert rank_correlations(of_question(contribution_rows(robots=2))).empty
-    found = rank_correlations(of_question(contribution_rows()))
+    assert rank_correlations(select_contributions(contribution_rows(robots=2))).empty
+    found = rank_correlations(select_contributions(contribution_rows()))
     assert found["measure"].tolist() == ["pucks", "time"]
     assert found[["robots", "games", "games_low"]].isna().all(axis=None)
 
 
 def test_missing_measures_are_left_out() -> None:
-    rows = of_question(contribution_rows(time_sud=np.nan, sud=noise(9.0).round().astype(int)))
-    assert measures_of(rows) == ["pucks"]
+    rows = select_contributions(contribution_rows(time_sud=np.nan, sud=noise(9.0).round().astype(int)))
+    assert measures_with_values(rows) == ["pucks"]
     assert rank_correlations(rows)["measure"].tolist() == ["pucks"]
     assert len(contribution_figure(rows).axes) == 1
 
@@ -139,8 +143,8 @@ def test_the_share_of_conflict_time_that_becomes_program_time(share: float) -> N
     met = 50.0 + noise(5.0)
     times = {"mates_t_a": 300.0, "mates_t_a_without": 300.0 - share * met, "mates_t_a_met": met}
     times |= {"mates_t_p": 900.0, "mates_t_p_without": 900.0 + share * met}
-    rows = of_question(contribution_rows(**times))
-    found = assumption(rows).set_index("others").loc["mates"]
+    rows = select_contributions(contribution_rows(**times))
+    found = freed_time(rows).set_index("others").loc["mates"]
     assert found[["share", "share_low", "share_high"]].tolist() == pytest.approx([share] * 3)
     assert found["met"] == pytest.approx(met.mean())
     assert found["t_p_without"] - found["t_p"] == pytest.approx(share * met.mean())
@@ -149,22 +153,26 @@ def test_the_share_of_conflict_time_that_becomes_program_time(share: float) -> N
 def test_the_interval_of_the_share_widens_with_the_noise() -> None:
     widths = []
     for size in (1.0, 20.0):
-        rows = of_question(contribution_rows(opponents_t_a=200.0 + noise(size), opponents_t_a_without=150.0))
-        found = assumption(rows).set_index("others").loc["opponents"]
+        rows = select_contributions(
+            contribution_rows(opponents_t_a=200.0 + noise(size), opponents_t_a_without=150.0)
+        )
+        found = freed_time(rows).set_index("others").loc["opponents"]
         assert found["share_low"] < found["share"] < found["share_high"]
         widths.append(found["share_high"] - found["share_low"])
     assert widths[0] < widths[1] / 10
 
 
 def test_times_are_scaled_to_the_duration_with_the_robot() -> None:
-    rows = of_question(contribution_rows(mates_t_a=200.0, mates_t_a_without=300.0, duration_without=1200.0))
-    found = assumption(rows).set_index("others").loc["mates"]
+    rows = select_contributions(
+        contribution_rows(mates_t_a=200.0, mates_t_a_without=300.0, duration_without=1200.0)
+    )
+    found = freed_time(rows).set_index("others").loc["mates"]
     assert (found["t_a_without"], found["t_p_without"], found["share"]) == (150.0, 50.0, 0.5)
 
 
 def test_without_others_or_meetings_there_is_no_share() -> None:
     no_mates = {f"mates_{what}": 0.0 for what in ("t_a", "t_a_without", "t_p", "t_p_without", "t_a_met")}
-    found = assumption(of_question(contribution_rows(**no_mates, opponents_t_a_met=0.0)))
+    found = freed_time(select_contributions(contribution_rows(**no_mates, opponents_t_a_met=0.0)))
     assert found["others"].tolist() == ["opponents"]
     assert found[["share", "share_low", "share_high"]].isna().all(axis=None)
 

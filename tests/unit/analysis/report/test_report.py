@@ -57,7 +57,7 @@ def test_the_table_of_missing_games_has_incomplete_scenarios_and_a_caption() -> 
 
 
 def a_report() -> Report:
-    part = Part("one", "One & only", ["text <b>"], source="a = 1\nb = 2")
+    part = Part("one", "One & only", ["text <b>"], preformatted="a = 1\nb = 2")
     drawing = Figure(figsize=(9, 2))
     drawing.subplots()
     part.add_figure("curve", drawing, 'alt "quoted"', "caption")
@@ -145,8 +145,8 @@ def test_random_stations_are_not_drawn_into_the_common_map(
     (condition,) = recorded_conditions(tmp_path, "conflicts", runs)
     shown: list[bool] = []
 
-    def heat_map_figure(conflicts: pd.DataFrame, title: str, places: Arena | None) -> Figure:
-        shown.append(places is not None)
+    def heat_map_figure(conflicts: pd.DataFrame, title: str, arena: Arena | None) -> Figure:
+        shown.append(arena is not None)
         return Figure()
 
     monkeypatch.setattr("kswarms.analysis.figures.heat_maps.heat_map_figure", heat_map_figure)
@@ -177,11 +177,11 @@ def test_provenance_shows_the_manifest(tmp_path: Path) -> None:
     }
     (tmp_path / "manifest.json").write_text(json.dumps(content))
     _, manifest, *others = directory_parts(tmp_path)
-    assert manifest.source.splitlines() == ["kswarms: 0.1.0", "code: abc", "empty: []"]
+    assert manifest.preformatted.splitlines() == ["kswarms: 0.1.0", "code: abc", "empty: []"]
     assert [part.id for part in others] == ["manifest-scenarios", "manifest-libraries", "manifest-sessions"]
-    assert others[0].source == '# fig-x\nid = "fig-x"\nseeds = 4'
-    assert others[1].source == "numpy: 2.4"
-    assert json.loads(others[2].source) == content["sessions"]
+    assert others[0].preformatted == '# fig-x\nid = "fig-x"\nseeds = 4'
+    assert others[1].preformatted == "numpy: 2.4"
+    assert json.loads(others[2].preformatted) == content["sessions"]
 
 
 @pytest.mark.parametrize(("text", "allowed"), [("{", "readable JSON"), ("[1]", "a JSON object")])

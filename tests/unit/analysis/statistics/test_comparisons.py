@@ -9,11 +9,11 @@ from statsmodels.stats.power import TTestPower
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.statistics.comparisons import (
+    additional_seeds,
     adjust_p_values,
     compare_independent,
     compare_paired,
     effect_size,
-    more_seeds,
 )
 from kswarms.analysis.statistics.intervals import Interval
 from tests.helpers.chance import is_plausible, normal_samples
@@ -93,23 +93,23 @@ def test_invalid_p_values_and_methods_are_refused() -> None:
 def test_the_additional_seeds_have_the_power(d_z: float) -> None:
     sample = next(normal_samples(1, seeds=3))
     sample = (sample - sample.mean()) / sample.std(ddof=1) + d_z
-    more = more_seeds(sample, power=0.8)
+    more = additional_seeds(sample, power=0.8)
     assert more is not None
     powers = [TTestPower().power(d_z, 3 + seeds, 0.05) for seeds in (more - 1, more)]
     assert powers[0] < 0.8 <= powers[1]
 
 
 def test_enough_seeds_need_no_more_and_no_effect_needs_too_many() -> None:
-    assert more_seeds([5.0, 5.1, 4.9, 5.0]) == 0
-    assert more_seeds([5.0, 5.0]) == more_seeds([50.0, 50.1, 49.9, 50.0], confidence=0.995) == 0
-    assert more_seeds([1.0, -1.0]) is None
+    assert additional_seeds([5.0, 5.1, 4.9, 5.0]) == 0
+    assert additional_seeds([5.0, 5.0]) == additional_seeds([50.0, 50.1, 49.9, 50.0], confidence=0.995) == 0
+    assert additional_seeds([1.0, -1.0]) is None
 
 
 def test_an_invalid_power_and_a_single_seed_are_refused() -> None:
     with pytest.raises(InputError, match=r"power=1\.0: must be between 0 and 1"):
-        more_seeds([1.0, 2.0], power=1.0)
+        additional_seeds([1.0, 2.0], power=1.0)
     with pytest.raises(InputError, match="seeds=1: must be at least 2"):
-        more_seeds([1.0])
+        additional_seeds([1.0])
 
 
 def test_independent_samples_have_welchs_interval() -> None:

@@ -44,33 +44,33 @@ def test_crossings_of_straight_lines(curve: list[float], expected: tuple[float, 
 def test_a_curve_overtakes_at_its_last_crossing() -> None:
     found = overtaking(DENSITIES, seeds_around([-9, 5, -5, 10, 10], noise=0.1))
     assert len(found.crossings) == 3
-    assert found.for_good.estimate == pytest.approx(found.crossings[-1]) == pytest.approx(26 + 10 / 3)
-    assert 29 < found.for_good.low < found.for_good.estimate < found.for_good.high < 30
+    assert found.last_crossing.estimate == pytest.approx(found.crossings[-1]) == pytest.approx(26 + 10 / 3)
+    assert 29 < found.last_crossing.low < found.last_crossing.estimate < found.last_crossing.high < 30
 
 
 def test_a_curve_that_is_always_ahead_never_overtakes() -> None:
     found = overtaking(DENSITIES, seeds_around([5, 5, 5, 5, 5], noise=0.1))
     assert found.crossings == ()
-    assert found.for_good == Interval(-math.inf, -math.inf, -math.inf)
+    assert found.last_crossing == Interval(-math.inf, -math.inf, -math.inf)
 
 
 @pytest.mark.parametrize("curve", [[-5, -5, -5, -5, -5], [5, 5, 5, 5, -5], [5, 5, 5, 5, 0]])
 def test_a_curve_that_is_behind_at_the_end_has_not_overtaken(curve: list[float]) -> None:
     values = np.tile(np.asarray(curve, dtype=np.float64), (8, 1))
-    assert overtaking(DENSITIES, values).for_good == Interval(math.inf, math.inf, math.inf)
+    assert overtaking(DENSITIES, values).last_crossing == Interval(math.inf, math.inf, math.inf)
 
 
 def test_an_uncertain_lead_at_the_end_leaves_the_interval_open() -> None:
     found = overtaking(DENSITIES, seeds_around([-9, -9, -9, -9, 0.1]))
-    assert 45 < found.for_good.estimate < 46
-    assert found.for_good.high == math.inf
-    assert found.for_good.low > 44
+    assert 45 < found.last_crossing.estimate < 46
+    assert found.last_crossing.high == math.inf
+    assert found.last_crossing.low > 44
 
 
 def test_curves_that_hardly_differ_may_have_crossed_anywhere() -> None:
     found = overtaking(DENSITIES, seeds_around([0.1, -0.1, 0.1, -0.1, 5]))
-    assert found.for_good.low == -math.inf
-    assert 36 < found.for_good.high < 38
+    assert found.last_crossing.low == -math.inf
+    assert 36 < found.last_crossing.high < 38
 
 
 @pytest.mark.slow
@@ -80,7 +80,7 @@ def test_the_interval_of_a_crossing_covers_the_true_one_as_often_as_its_level() 
     draws = np.random.default_rng(3)
     hits = 0
     for _ in range(count):
-        interval = overtaking(DENSITIES, line + draws.normal(scale=0.9, size=(20, 5))).for_good
+        interval = overtaking(DENSITIES, line + draws.normal(scale=0.9, size=(20, 5))).last_crossing
         hits += interval.low <= 30 <= interval.high
     assert is_plausible(0.95, hits, count), hits / count
 

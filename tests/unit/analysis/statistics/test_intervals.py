@@ -11,8 +11,8 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.statistics.intervals import (
     Interval,
     bootstrap_interval,
-    fewest_seeds,
     intervals_of_means,
+    min_seeds,
 )
 from tests.helpers.chance import is_plausible, normal_samples
 
@@ -77,9 +77,9 @@ def test_too_few_seeds_give_no_bounds() -> None:
 
 def test_six_seeds_are_the_minimum_for_95_percent() -> None:
     # All on one side: 2 / 2⁶ = 0.031, but 2 / 2⁵ = 0.063.
-    assert fewest_seeds(0.95) == 6
-    assert fewest_seeds(0.5) == 2
-    assert fewest_seeds(0.995) == 9
+    assert min_seeds(0.95) == 6
+    assert min_seeds(0.5) == 2
+    assert min_seeds(0.995) == 9
 
 
 def test_percentiles_replace_bca_where_it_is_undefined() -> None:

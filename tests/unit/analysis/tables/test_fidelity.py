@@ -8,7 +8,7 @@ from scipy import stats
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.results.published import argos_fixed_policies
-from kswarms.analysis.tables.fidelity import against_argos, markdown_table
+from kswarms.analysis.tables.fidelity import compare_with_argos, markdown_table
 
 
 def runs_of(
@@ -27,7 +27,7 @@ def argos(first: str, second: str, n: int) -> pd.DataFrame:
 
 
 def only_row(runs: pd.DataFrame) -> pd.Series:
-    frame = against_argos(runs)
+    frame = compare_with_argos(runs)
     assert len(frame) == 1
     return frame.iloc[0]
 
@@ -45,7 +45,7 @@ def own_form(games: pd.DataFrame) -> pd.DataFrame:
 
 
 def test_argos_agrees_with_itself_in_every_row() -> None:
-    frame = against_argos(own_form(argos_fixed_policies()))
+    frame = compare_with_argos(own_form(argos_fixed_policies()))
     assert len(frame) == 3 * 5 * 2
     assert frame["score_difference"].to_numpy() == pytest.approx(0)
     assert frame["share_difference"].to_numpy() == pytest.approx(0)
@@ -55,7 +55,7 @@ def test_argos_agrees_with_itself_in_every_row() -> None:
 
 def test_the_first_policy_is_that_of_s1() -> None:
     games = argos("avoid", "attack", 36)
-    frame = against_argos(own_form(games)).set_index("swarm")
+    frame = compare_with_argos(own_form(games)).set_index("swarm")
     assert frame["score_theirs"].to_dict() == pytest.approx({1: 34.3, 2: 28.9})
     lived = 600 * 18
     expected = ((games["ta_intra2"] + games["ta_inter2"]) / lived).mean()
@@ -127,7 +127,7 @@ def test_constant_scores_have_an_interval_of_width_0(monkeypatch: pytest.MonkeyP
     assert not row["score_fits"]
     assert pd.isna(row["score_relative"])
     assert only_row(runs_of([0, 0, 0]))["score_fits"]
-    assert "| – |" in markdown_table(against_argos(runs_of([3, 4])))  # no difference relative to 0
+    assert "| – |" in markdown_table(compare_with_argos(runs_of([3, 4])))  # no difference relative to 0
 
 
 def test_other_scenarios_and_densities_are_left_out() -> None:
@@ -139,11 +139,11 @@ def test_other_scenarios_and_densities_are_left_out() -> None:
 def test_runs_without_argos_games_are_refused() -> None:
     expected = r"fig-6\.1a.*must include argos-attack-attack, .* N = 6, 16, 26, 36, 46"
     with pytest.raises(InputError, match=expected):
-        against_argos(runs_of([26, 27], scenario="fig-6.1a"))
+        compare_with_argos(runs_of([26, 27], scenario="fig-6.1a"))
 
 
 def test_markdown_has_the_numbers_of_the_frame() -> None:
-    frame = against_argos(pd.concat([runs_of([26] * 3), runs_of([60], share=0.9, swarm=2)]))
+    frame = compare_with_argos(pd.concat([runs_of([26] * 3), runs_of([60], share=0.9, swarm=2)]))
     head, rule, first, second = markdown_table(frame).splitlines()
     assert head.count("|") == rule.count("|") == first.count("|") == second.count("|")
     cells = [cell.strip() for cell in first.strip("|").split("|")]
