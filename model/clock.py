@@ -23,6 +23,6 @@ class Instant(Event):
         self._callback = callback
 
     def schedule_in(self, delay: int) -> None:
-        """Schedule it `delay` periods from now; an earlier schedule must have passed."""
+        """Schedule the event `delay` periods from now; it must not be scheduled already."""
         self.callbacks = [self._callback]
-        self.env.schedule(self, self._priority, delay)  # type: ignore[arg-type]  # SimPy names only two of them
+        self.env.schedule(self, self._priority, delay)  # type: ignore[arg-type]  # SimPy's type has only 0 and 1

@@ -81,7 +81,7 @@ class GameModel(GameState):
             return
         until = self.now - self.now % self._sample_every + self._sample_every
         self.env.run(until=until)
-        self._check_clock(bool(self.ended) or self.now == until)
+        self._check_clock(until)
         self._sample()
 
     def play(self) -> None:
@@ -92,7 +92,7 @@ class GameModel(GameState):
             return
         if not self.ended:
             self.env.run()
-            self._check_clock(bool(self.ended))
+            self._check_clock()
         self._stop()
 
     def results(self) -> list[dict[str, Any]]:
@@ -107,8 +107,9 @@ class GameModel(GameState):
         """Return the recorded tables (conflicts, robots, trajectory) by name; columns have equal lengths."""
         return self.recorder.tables()
 
-    def _check_clock(self, in_order: bool) -> None:
-        if not in_order:  # a user-defined policy raised SimPy's StopSimulation
+    def _check_clock(self, until: int | None = None) -> None:
+        """Raise a RuntimeError unless the clock ran to period `until` or to the end of the game."""
+        if not self.ended and self.now != until:  # a user-defined policy raised SimPy's StopSimulation
             raise RuntimeError(f"the clock was stopped at {self.time} s, before the end of the game")
 
     def _stop(self) -> None:
@@ -144,7 +145,7 @@ class GameModel(GameState):
         raise StopSimulation(None)
 
     def _move(self, _: Event) -> None:
-        """Let robots decide, move the bodies to the next decision or event, and schedule the next motion."""
+        """Let robots decide, move the bodies up to the next decision or event, and schedule itself there."""
         if self.ended:
             return
         env, kernel = self.env, self._kernel
@@ -158,12 +159,12 @@ class GameModel(GameState):
         self._motion.schedule_in(tick - now)
 
     def _decide(self, now: int, size: int) -> None:
-        """Pass the first `size` events of the kernel to their robots, in the order of the robots' rows."""
+        """Pass the first `size` events of the kernel to their robots; the events are ordered by row."""
         robots, swarm_of = self.robots, self._swarm_of
         pick_ups = []
-        numbers, kinds, others, actives, vacants, angles = self._kernel.fields
+        rows, kinds, others, actives, vacants, angles = self._kernel.fields
         for k in range(size):
-            robot, kind = robots[numbers[k]], kinds[k]
+            robot, kind = robots[rows[k]], kinds[k]
             if kind == CONFLICT:
                 other = others[k]
                 robot.meet(now, other, swarm_of[other], angles[k], actives[k], vacants[k])

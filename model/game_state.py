@@ -1,4 +1,4 @@
-"""State of a game: clock, robots and scores. `GameModel` extends it by the events."""
+"""State of a game: clock, robots and scores. `GameModel` adds the events."""
 
 import math
 from collections.abc import Mapping

@@ -1,7 +1,7 @@
 """Starting places of robots: uniformly at random, without overlap (specification, section 3.1).
 
-Each robot gets the first free place among its random draws. In a crowd, a robot without a free draw gets the
-roomiest of its last draws, and overlaps are relaxed in the end (`kswarms.model.kernel.relaxation`).
+Each robot draws random places and takes the first free one. If none is free, it takes the place with the most
+room in its last batch; at the end, overlaps are relaxed (`kswarms.model.kernel.relaxation`).
 """
 
 import math
@@ -18,44 +18,47 @@ from kswarms.model.kernel.arrays import PAIR, WORK
 from kswarms.model.kernel.relaxation import TOLERANCE, relax
 
 _FEW: Final = 16
-"""Number of places that are drawn first and tested one by one, which is fastest where there is room."""
+"""Number of places that are drawn first and tested one by one, which is fastest in an empty arena."""
 _BATCHES: Final = (256, 4096, 4096)
-"""Numbers of places that are then drawn and tested together."""
+"""Sizes of the batches of places that are tested together afterwards."""
 
 
 def start_poses(
     n: int, seed: int, half: float, radius: float, clearance: float, wall_clearance: float
 ) -> tuple[Floats, Floats]:
-    """Draw positions (m), shape (n, 2), and headings (rad), shape (n,), from the streams of each robot.
+    """Draw positions (m), shape (n, 2), and headings (rad), shape (n,), from the streams of the robots.
 
     `half` is half the side of the arena; the clearances are the minimum gaps between bodies and to walls (m).
     """
     positions: list[tuple[float, float]] = []
     headings = np.empty(n)
     limit = half - radius - wall_clearance
-    apart = (2 * radius + clearance) ** 2
+    min_squared = (2 * radius + clearance) ** 2
     crowded = False
     for robot in range(n):
-        place, is_free = _draw_place(stream(seed, robot, Purpose.POSITION), limit, positions, apart)
+        place, is_free = _draw_place(stream(seed, robot, Purpose.POSITION), limit, positions, min_squared)
         positions.append(place)
         crowded |= not is_free
         headings[robot] = stream(seed, robot, Purpose.HEADING).uniform(-math.pi, math.pi)
     places = np.array(positions)
     if crowded:
-        _part(places, limit, radius + clearance / 2)
+        _separate(places, limit, radius + clearance / 2)
         if pdist(places).min() < 2 * radius + clearance:
-            raise InputError("n", n, f"robots of radius {radius} m find no place in a square of {2 * half} m")
+            raise InputError("n", n, f"robots of radius {radius} m do not fit in a square of {2 * half} m")
     return places, headings
 
 
 def _draw_place(
-    rng: Generator, limit: float, taken: list[tuple[float, float]], apart: float
+    rng: Generator, limit: float, taken: list[tuple[float, float]], min_squared: float
 ) -> tuple[tuple[float, float], bool]:
-    """Return the first free place drawn, or the roomiest of the last batch; and whether it is free."""
+    """Return the first free place and True, or the place with most room in the last batch and False.
+
+    A place is free if its squared distance from all taken places is at least `min_squared` (m²).
+    """
     for x, y in rng.uniform(-limit, limit, size=(_FEW, 2)).tolist():
         for other_x, other_y in taken:
             dx, dy = x - other_x, y - other_y
-            if dx * dx + dy * dy < apart:
+            if dx * dx + dy * dy < min_squared:
                 break
         else:
             return (x, y), True
@@ -63,13 +66,13 @@ def _draw_place(
     for batch in _BATCHES:
         places = rng.uniform(-limit, limit, size=(batch, 2))
         room = ((places[:, None, :] - others) ** 2).sum(axis=2).min(axis=1)
-        free = np.flatnonzero(room >= apart)
+        free = np.flatnonzero(room >= min_squared)
         if len(free) > 0:
             return tuple(places[free[0]].tolist()), True
     return tuple(places[room.argmax()].tolist()), False
 
 
-def _part(positions: Floats, limit: float, reach: float) -> None:
+def _separate(positions: Floats, limit: float, reach: float) -> None:
     """Move places within ± `limit` until their distances are at least twice `reach` (m)."""
     n = len(positions)
     pairs = np.zeros(n * (n - 1) // 2, dtype=PAIR)

@@ -38,7 +38,7 @@ def controller_constants(game: Game) -> Controller:
 def place_robots(game: Game, arena: Arena, seed: int, random: Random) -> tuple[ContinuousSpace, RobotStates]:
     """Place the bodies of all robots, at rest; return Mesa's space and the state arrays.
 
-    Both use the same array of positions. The space has no agents yet, and nothing draws from `random`.
+    Both use the same array of positions. The space has no agents yet. Nothing uses `random`.
     """
     half, body, parameters = arena.half, game.body, game.parameters
     positions, headings = start_poses(
@@ -78,7 +78,7 @@ def make_robots(model: Host, game: Game, seed: int) -> list[Krembot]:
 
 
 def remove_robots(model: Host, robots: Sequence[Krembot], absent: Sequence[int]) -> list[Krembot]:
-    """Remove robots by number from a complete game; return the others, which move up in the state arrays."""
+    """Remove robots by number from a complete game; renumber the rows of the others and return them."""
     for number in absent:
         robots[number].finish(int(model.env.now))
         robots[number].remove()

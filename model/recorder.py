@@ -21,8 +21,8 @@ RECORDS: Final = ("model", "agents", *RECORDED_TABLES)
 Table = dict[str, list[Any]]
 
 _CONFLICTS, _ROBOTS, _TRAJECTORY = (column_names(table)[1:] for table in RECORDED_TABLES)  # without the run
-_OF_GAME: Final = ("swarm", "duration", "ended")
-"""Columns of results that are not values of one swarm."""
+_NOT_REPORTED: Final = ("swarm", "duration", "ended")
+"""Columns of results without a model reporter for each swarm."""
 _POLICIES: Final = ("swarm", "opponent", "action", "share", "attack_share")
 _AGENT_REPORTERS: Final[dict[str, Callable[[Any], Any]]] = {
     "swarm": lambda robot: robot.swarm + 1,
@@ -48,10 +48,10 @@ def parse_record(text: str) -> frozenset[str]:
 class Recorder:
     """Records a game; `record` is a subset of `RECORDS`.
 
-    Model reporters: ``time`` (s since the start), ``game_time`` (s of the measured game), ``ended``, and for
-    swarm k the columns of the table ``runs``, such as ``pucks_k`` and ``t_p_k``; ``share_a_k`` and
-    ``share_p_k``, its fractions of T(a), T(p). None has the name of an argument of `ForagingModel`, because
-    `mesa.batch_run` puts both into one row.
+    Model reporters: ``time`` (s since the start), ``game_time`` (s of the measured game) and ``ended``; for
+    each swarm k the columns of the table ``runs``, such as ``pucks_k`` and ``t_p_k``, and its fractions of
+    T(a) and T(p), ``share_a_k`` and ``share_p_k``. No reporter has the name of an argument of
+    `ForagingModel`, because `mesa.batch_run` puts both into one row.
     Agent reporters: swarm, state, puck, x, y and heading. Table: conflicts.
 
     Attributes
@@ -59,7 +59,7 @@ class Recorder:
     collector : mesa.DataCollector
         Samples, and the table of conflicts.
     samples : bool
-        Whether anything is recorded at the samples.
+        Whether sampling records anything.
     sample_times : list of float
         Times of the samples (s).
     """
@@ -91,7 +91,7 @@ class Recorder:
     def flush_conflicts(self) -> None:
         """Move the closed conflicts to the table: times in seconds, swarms counted from 1.
 
-        ``seen`` has a tuple per swarm: the numbers of its robots that the sensors read, ascending.
+        ``seen`` has a tuple per swarm: the numbers of its robots that the sensors detect, ascending.
         """
         log, state = self._state.conflict_log, self._state
         if not log:
@@ -149,7 +149,7 @@ def _sample_row(state: GameState) -> dict[str, Any]:
         t_a, t_p = state.times(k)
         share = float(share_of_time(sum(t_a), sum(t_a), t_p))
         row = _result_row(state, k, t_a, t_p) | {"share_a": share, "share_p": 1.0 - share}
-        sample |= {f"{name}_{k + 1}": value for name, value in row.items() if name not in _OF_GAME}
+        sample |= {f"{name}_{k + 1}": value for name, value in row.items() if name not in _NOT_REPORTED}
     return sample
 
 

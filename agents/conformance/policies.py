@@ -15,128 +15,128 @@ from kswarms.agents.policies.saved import check_arms, snapshot_of
 from kswarms.agents.policies.spec import Factory
 from kswarms.agents.streams import Purpose, Streams, stream
 
-TWO: Final = (
+TWO_ACTIONS: Final = (
     Action(name="flight", direction=AWAY, duration=1.8),
     Action(name="fight", direction=TOWARDS, duration=1.0),
 )
-FOUR: Final = (
-    *TWO,
+FOUR_ACTIONS: Final = (
+    *TWO_ACTIONS,
     Action(name="dash", direction=AWAY, duration=0.1),
     Action(name="ram", direction=TOWARDS, duration=3.0),
 )
 
 
-def setting(
-    swarm: int = 1, swarms: int = 2, actions: tuple[Action, ...] = TWO, seed: int = 0, robot: int = 3
+def make_setting(
+    swarm: int = 1, swarms: int = 2, actions: tuple[Action, ...] = TWO_ACTIONS, seed: int = 0, robot: int = 3
 ) -> Setting:
     """Return the setting of a robot."""
     return Setting(swarm, swarms, actions, Streams(seed, robot))
 
 
-def settings() -> list[Setting]:
+def make_settings() -> list[Setting]:
     """Return settings in games of two and three swarms, with two and four actions."""
     robots = [(swarm, swarms) for swarms in (2, 3) for swarm in range(swarms)]
-    return [setting(*robot, actions) for robot in robots for actions in (TWO, FOUR)]
+    return [make_setting(*robot, actions) for robot in robots for actions in (TWO_ACTIONS, FOUR_ACTIONS)]
 
 
 def play_conflicts(
-    policy: Policy, where: Setting, conflicts: int = 80, learning: bool = True
+    policy: Policy, setting: Setting, conflicts: int = 80, learning: bool = True
 ) -> list[tuple[Any, ...]]:
     """Play conflicts that do not depend on the policy and check what its methods return.
 
     Returns the choices as (opponent, action), each followed by the result of ``learn`` if there is one.
     """
-    draws, story = np.random.default_rng(7), []
+    rng, trace = np.random.default_rng(7), []
     learn = getattr(policy, "learn", None) if learning else None
     for k in range(conflicts):
-        opponent = k if k < where.swarms else int(draws.integers(where.swarms))
-        t_a, t_p, n_active = draws.uniform(1, 3), draws.uniform(0, 20), int(draws.integers(9))
+        opponent = k if k < setting.swarms else int(rng.integers(setting.swarms))
+        t_a, t_p, n_active = rng.uniform(1, 3), rng.uniform(0, 20), int(rng.integers(9))
         action = policy.choose(opponent)
         rule = f"choose({opponent}) must return an action of the game, not {action!r}"
-        require(action in where.actions, rule)
-        story.append((opponent, action.name))
+        require(action in setting.actions, rule)
+        trace.append((opponent, action.name))
         if learn is not None:
             result = learn(t_a, t_p, n_active)
             is_pair = isinstance(result, tuple) and [isinstance(x, float) for x in result] == [True, True]
             require(is_pair, f"learn(…) must return two floats, R and Q, not {result!r}")
-            story.append(result)
-    return story
+            trace.append(result)
+    return trace
 
 
-def check_snapshot_of(policy: Policy, where: Setting) -> None:
-    """Check that ``snapshot()``, if there is one, describes arms of the game as `Learner.snapshot` does."""
+def check_snapshot_of(policy: Policy, setting: Setting) -> None:
+    """Check that ``snapshot()``, if defined, has the format of `Learner.snapshot` and arms of the game."""
     arms = snapshot_of(policy)
     try:
         check_arms(arms)
     except (ValueError, KeyError, TypeError) as error:
-        raise CheckError(f"snapshot() must be as that of a Learner ({error})") from None
-    names = [action.name for action in where.actions]
+        raise CheckError(f"snapshot() must be like Learner.snapshot() ({error})") from None
+    names = [action.name for action in setting.actions]
     for arm in arms:
-        known = arm["action"] in names and 1 <= arm["opponent"] <= where.swarms
+        known = arm["action"] in names and 1 <= arm["opponent"] <= setting.swarms
         require(known, f"snapshot() must describe the game's actions and swarms, not {arm}")
 
 
 def check_results_of_methods(build: Factory) -> None:
     """Check that the methods return actions of the game, pairs of floats and arms of the game."""
-    for where in settings():
-        policy = build(where)
-        play_conflicts(policy, where)
-        check_snapshot_of(policy, where)
+    for setting in make_settings():
+        policy = build(setting)
+        play_conflicts(policy, setting)
+        check_snapshot_of(policy, setting)
 
 
 def check_same_seed_gives_same_choices(build: Factory) -> None:
     """Check that the robot's streams are the only source of randomness."""
-    for where in settings():
-        stories = []
+    for setting in make_settings():
+        traces = []
         for _ in range(2):
-            again = where._replace(streams=Streams(0, 3))
-            stories.append(repr(play_conflicts(build(again), again)))
+            fresh = setting._replace(streams=Streams(0, 3))
+            traces.append(repr(play_conflicts(build(fresh), fresh)))
             random.random()
-        require(stories[0] == stories[1], "the same seed gave other choices")
+        require(traces[0] == traces[1], "the same seed gave other choices")
 
 
 def check_robots_share_no_state(build: Factory) -> None:
     """Check that the conflicts of one robot do not change another robot's choices."""
-    wheres = [setting(robot=robot) for robot in (4, 5, 4)]
-    alone = play_conflicts(build(wheres[0]), wheres[0])
-    neighbour, one = build(wheres[1]), build(wheres[2])
-    play_conflicts(neighbour, wheres[1])
-    story = play_conflicts(one, wheres[2])
-    require(repr(story) == repr(alone), "another robot's conflicts made a difference")
+    alone, other, beside = (make_setting(robot=robot) for robot in (4, 5, 4))
+    expected = play_conflicts(build(alone), alone)
+    other_policy, policy = build(other), build(beside)
+    play_conflicts(other_policy, other)
+    trace = play_conflicts(policy, beside)
+    require(repr(trace) == repr(expected), "another robot's conflicts change the choices")
 
 
 def check_copies_behave_alike(build: Factory) -> None:
-    """Check that copies, pickled ones too, continue as the policy does."""
-    where = setting()
-    policy = build(where)
-    play_conflicts(policy, where, conflicts=17)
+    """Check that deep copies and pickled copies choose and learn like the original."""
+    setting = make_setting()
+    policy = build(setting)
+    play_conflicts(policy, setting, conflicts=17)
     twins = {"a deep copy": copy.deepcopy(policy), "a pickled copy": pickle.loads(pickle.dumps(policy))}
-    story = repr(play_conflicts(policy, where))
+    trace = repr(play_conflicts(policy, setting))
     for name, twin in twins.items():
-        require(repr(play_conflicts(twin, where)) == story, f"{name} behaves differently")
+        require(repr(play_conflicts(twin, setting)) == trace, f"{name} behaves differently")
 
 
 def check_other_streams_are_untouched(build: Factory) -> None:
     """Check that the policy draws only from the streams for policies."""
-    where = setting(seed=6)
-    play_conflicts(build(where), where)
+    setting = make_setting(seed=6)
+    play_conflicts(build(setting), setting)
     for purpose in set(Purpose) - {Purpose.EXPLORE, Purpose.POLICY}:
         untouched = stream(6, 3, purpose).random()
-        require(where.streams.generator(purpose).random() == untouched, f"it draws from {purpose.name}")
+        require(setting.streams.generator(purpose).random() == untouched, f"it draws from {purpose.name}")
 
 
 def check_freezing_stops_learning(build: Factory) -> None:
     """Check that `freeze` ends exploration and learning."""
-    for where in settings():
-        policy = build(where)
+    for setting in make_settings():
+        policy = build(setting)
         if not hasattr(policy, "learn"):
             continue
-        play_conflicts(policy, where)
+        play_conflicts(policy, setting)
         learner = cast(LearningPolicy, policy)
         learner.freeze()
         learned = repr(snapshot_of(policy))
         chosen: dict[int, set[str]] = {}
-        for opponent, action in play_conflicts(policy, where, learning=False):
+        for opponent, action in play_conflicts(policy, setting, learning=False):
             chosen.setdefault(opponent, set()).add(action)
         fixed = all(len(names) == 1 for names in chosen.values())
         require(fixed, f"the choices still vary after freeze(): {chosen}")

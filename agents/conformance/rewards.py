@@ -22,7 +22,7 @@ def cases() -> Iterator[Case]:
 
 
 def compute_rewards(reward: Reward, conflicts: Iterable[Case]) -> list[float]:
-    """Return the rewards of some conflicts; check that they are finite."""
+    """Return the rewards of conflicts; check that they are finite."""
     rewards = []
     for case in conflicts:
         r = reward.of(*case)
@@ -33,12 +33,12 @@ def compute_rewards(reward: Reward, conflicts: Iterable[Case]) -> list[float]:
 
 
 def check_copies(make: Make) -> None:
-    """Check that copies, pickled ones too, are equal and give the same rewards."""
+    """Check that copies and pickled copies are equal and give the same rewards."""
     shared.check_copies(make, lambda reward: [reward.of(*case) for case in cases()])
 
 
 def check_frozen(make: Make) -> None:
-    """Check that nothing changes it."""
+    """Check that the reward is immutable."""
     shared.check_frozen(make, lambda reward: [reward.of(*case) for case in cases()])
 
 

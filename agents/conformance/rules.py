@@ -24,17 +24,17 @@ def exploration_rng(seed: int = 0) -> Generator:
 
 
 def choose_arms(rule: Rule, arms: int, seed: int, conflicts: int = 60) -> list[int]:
-    """Return the choices in conflicts whose outcomes depend on the choices alone.
+    """Return the choices of a rule in conflicts whose outcomes depend on `seed` and the choices alone.
 
     Check that the factor is in (0, 1], choices are arms, and no choice changes the bandit.
     """
-    bandit, stream_of_robot, noise = Bandit(arms), exploration_rng(seed), np.random.default_rng(99)
+    bandit, rng, noise = Bandit(arms), exploration_rng(seed), np.random.default_rng(99)
     factor, chosen = rule.factor, []
     in_range = isinstance(factor, float | int) and 0 < factor <= 1
     require(in_range, f"factor must be a number above 0 and at most 1, not {factor!r}")
     for _ in range(conflicts):
         before = repr(bandit), bandit.choices
-        arm = rule.choose(bandit, stream_of_robot)
+        arm = rule.choose(bandit, rng)
         is_arm = isinstance(arm, Integral) and 0 <= arm < arms
         require(is_arm, f"prefer(…) must return 0 to {arms - 1}, not {arm!r}")
         require((repr(bandit), bandit.choices) == before, "choose(…) must not change the bandit")
@@ -45,17 +45,17 @@ def choose_arms(rule: Rule, arms: int, seed: int, conflicts: int = 60) -> list[i
 
 
 def check_copies(make: Make) -> None:
-    """Check that copies, pickled ones too, are equal and make the same choices."""
+    """Check that copies and pickled copies are equal and make the same choices."""
     shared.check_copies(make, lambda rule: choose_arms(rule, 3, seed=5))
 
 
 def check_frozen(make: Make) -> None:
-    """Check that nothing changes it: what is learned belongs to the bandit."""
+    """Check that the rule is immutable: learned values belong in the bandit."""
     shared.check_frozen(make, lambda rule: choose_arms(rule, 3, seed=5))
 
 
 def check_same_seed_gives_same_choices(make: Make) -> None:
-    """Check that the robot's stream is the only source of randomness, and robots share no state."""
+    """Check that the robot's stream is the only source of randomness, and that robots share no state."""
     for arms in ARMS:
         choices = choose_arms(make(), arms, seed=3)
         random.random()

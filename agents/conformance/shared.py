@@ -1,4 +1,4 @@
-"""Checks that rewards and selection rules share: both are frozen, validated descriptions."""
+"""Checks that rewards and selection rules share: both are subclasses of `FrozenModel`."""
 
 import copy
 import pickle
@@ -11,7 +11,7 @@ from kswarms.agents.common.errors import InputError
 Make = Callable[..., Any]
 """A class, or a callable that builds one: ``functools.partial(MyReward, weight=2.0)``."""
 Use = Callable[[Any], Any]
-"""Uses a description as a game does, and returns the results."""
+"""Uses the object as a game does, and returns the results."""
 
 
 class CheckError(AssertionError):
@@ -25,7 +25,7 @@ def require(condition: bool, message: str) -> None:
 
 
 def check_copies(make: Make, use: Use) -> None:
-    """Check that copies, pickled ones too, are equal and give the same results."""
+    """Check that copies and pickled copies are equal and give the same results."""
     one = make()
     twins = {
         "another": make(),
@@ -41,7 +41,7 @@ def check_copies(make: Make, use: Use) -> None:
 
 
 def check_frozen(make: Make, use: Use) -> None:
-    """Check that neither use nor an assignment changes it."""
+    """Check that neither use nor assignment changes the object."""
     one: FrozenModel = make()
     before = repr(one), dict(vars(one))
     use(one)
@@ -55,7 +55,7 @@ def check_frozen(make: Make, use: Use) -> None:
 
 
 def check_unknown_arguments(make: Make) -> None:
-    """Check that an unknown argument is refused."""
+    """Check that an unknown argument raises an `InputError`."""
     try:
         make(no_such_argument=1)
     except InputError:

@@ -35,7 +35,7 @@ class SwarmFields(FrozenModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _write_policy(cls, values: Any) -> Any:
+    def _policy_to_text(cls, values: Any) -> Any:
         if not isinstance(values, dict) or isinstance(values.get("policy", ""), str):
             return values
         specs = parse_policies(values["policy"])

@@ -93,7 +93,7 @@ class Game(GameFields):
         parameters, body = self.parameters, self.body
         fastest = max(max(swarm.drive, swarm.drive_action) for swarm in self.swarms)
         if parameters.period * body.top_speed * fastest > LONGEST_STEP * body.radius:
-            rule = f"must be so short that a robot covers at most {LONGEST_STEP} of its radius"
+            rule = f"must be so short that a robot moves at most {LONGEST_STEP} of its radius in a period"
             raise InputError("period", parameters.period, rule)
         if (self.learning + self.duration) / parameters.period > MAX_PERIODS:
             rule = f"must be at most {MAX_PERIODS} periods, learning included"
@@ -103,7 +103,7 @@ class Game(GameFields):
             raise InputError("wall_distance", parameters.wall_distance, "must be less than half the arena")
 
     def _check_absent(self) -> None:
-        if not self.absent:  # `absent_from` has no effect: equal games are equal descriptions
+        if not self.absent:  # `absent_from` has no effect; the default makes equal games compare equal
             object.__setattr__(self, "absent_from", "learning")
         for robot in self.absent:
             if not 0 <= robot < self.size:

@@ -10,7 +10,7 @@ from typing import Final
 from kswarms.agents.common.jit import compiled
 from kswarms.agents.robot.sensing import wrap
 from kswarms.model.kernel.arrays import Memory
-from kswarms.model.kernel.contacts import JAMMED, part, translate
+from kswarms.model.kernel.contacts import JAMMED, separate, translate
 from kswarms.model.kernel.neighbours import refresh
 from kswarms.model.kernel.percepts import find_pucks, perceive
 
@@ -20,16 +20,16 @@ PERCEPTS: Final = 1
 MOTION: Final = 2
 
 _MAX_REFRESHES: Final = 50
-"""Maximum number of listings of neighbours in one period; only bodies without room need more."""
+"""Maximum number of rebuilds of the pairs in one period; more are needed only if the bodies have no room."""
 
 
 @compiled
 def advance(m: Memory, tick: int, until: int) -> tuple[int, int]:
     """Advance from control period `tick` to the first decision, but not beyond the start of `until`.
 
-    Return the period reached, and the number of events in ``m.events``; without events, the period reached
-    is `until`. If the pick-ups and deposits of a period are done, its percepts follow even in period `until`.
-    Raise a ValueError if overlapping bodies cannot be parted.
+    Return the period reached, which is `until` without events, and the number of events in ``m.events``. If
+    the pick-ups and deposits of period `until` are done, its percepts are done too, but no motion. Raise a
+    ValueError if overlapping bodies cannot be separated.
     """
     positions, stage = m.positions, m.scalars["stage"]
     heading, turn_rate = m.robots["heading"], m.robots["turn_rate"]
@@ -54,17 +54,17 @@ def advance(m: Memory, tick: int, until: int) -> tuple[int, int]:
                 forward_x[i] = math.cos(heading[i])
                 forward_y[i] = math.sin(heading[i])
         translate(m)
-        _part_unlisted(m)
+        _separate_unlisted(m)
         stage[0] = PUCKS
         tick += 1
     return tick, 0
 
 
 @compiled
-def _part_unlisted(m: Memory) -> None:
-    """Part bodies that moved so far that they may overlap bodies outside their lists of neighbours."""
+def _separate_unlisted(m: Memory) -> None:
+    """Separate bodies that moved so far that they may overlap bodies with which they are not listed."""
     for _ in range(_MAX_REFRESHES):
         if not refresh(m):
             return
-        part(m)
+        separate(m)
     raise ValueError(JAMMED)

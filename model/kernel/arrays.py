@@ -23,8 +23,8 @@ SCALARS: Final = np.dtype(
         ("base_radius", np.float64),
         ("friction", np.float64),  # Coulomb coefficient
         ("push_share", np.float64),
-        ("pair_reach", np.float64),  # pairs within it are listed
-        ("skin", np.float64),  # allowance of the list for motion
+        ("pair_reach", np.float64),  # pairs within it, centre to centre, are listed
+        ("skin", np.float64),  # margin of pair_reach, for motion until the next rebuild of the list
         ("preempt", np.int64),
         # Written by the kernel:
         ("stage", np.int64),  # next stage of this period
@@ -56,10 +56,10 @@ WORK: Final = np.dtype(
         ("count", np.int64),  # contacts; in the relaxation, overlaps
         ("queued", np.int64),  # whether the relaxation may move it
         ("queue", np.int64),  # row k: the k-th robot that the relaxation may move
-        ("origin_x", np.float64),  # position at the last listing of neighbours, NaN before the first
+        ("origin_x", np.float64),  # position at the last rebuild of the pairs, NaN before the first
         ("origin_y", np.float64),
         ("cell_robots", np.int64),  # robots ordered by cell, ascending in each cell
-        ("found", np.int64),  # robots around one robot
+        ("found", np.int64),  # result of `within`: robots near a point
         ("nearest", np.int64),  # nearest robot ahead, -1 for none
         ("squared", np.float64),  # its distance, squared
     ]
@@ -91,6 +91,7 @@ EVENT: Final = np.dtype(
 )
 """A decision that a robot must take."""
 
+# Kinds of events.
 PICK_UP: Final = 1
 DEPOSIT: Final = 2
 CONFLICT: Final = 3

@@ -2,8 +2,9 @@
 
 A robot that drives into a body or a wall loses the normal part of its motion and slides along it; the
 tangential part shrinks by μ times the blocked normal displacement (Coulomb friction). Two robots that drive
-into each other share the gap in proportion to their speeds. A robot with several contacts meets each once,
-the most blocking first; the remaining overlap (a wedge) is relaxed (`kswarms.model.kernel.relaxation`).
+into each other share the gap in proportion to their speeds. Several contacts of a robot are handled one after
+the other, the most blocking first; the remaining overlap (a wedge) is relaxed
+(`kswarms.model.kernel.relaxation`).
 """
 
 import math
@@ -14,7 +15,7 @@ from kswarms.agents.common.jit import compiled
 from kswarms.model.kernel.arrays import MAX_CONTACTS, Memory
 from kswarms.model.kernel.relaxation import relax
 
-JAMMED: Final = "bodies overlap, and nothing parts them: there are too many, or periods are too long"
+JAMMED: Final = "overlapping bodies cannot be separated: too many robots, or too long a period"
 
 
 @compiled
@@ -43,11 +44,11 @@ def translate(m: Memory) -> None:
         positions[i, 0] += move_x[i] + shove_x[i]
         positions[i, 1] += move_y[i] + shove_y[i]
     if crowded:
-        part(m)
+        separate(m)
 
 
 @compiled
-def part(m: Memory) -> None:
+def separate(m: Memory) -> None:
     """Relax overlaps; raise a ValueError if overlaps remain."""
     radius, half, n_pairs = m.scalars["radius"][0], m.scalars["half"][0], m.scalars["n_pairs"][0]
     if relax(m.positions, radius, half, m.work, m.pairs, n_pairs) < 0:
@@ -74,7 +75,7 @@ def _meet_bodies(m: Memory, fastest: float) -> None:
             continue
         distance = math.sqrt(squared)
         if distance == 0.0:
-            continue  # no direction: the relaxation parts them
+            continue  # no direction: the relaxation separates them
         dx /= distance
         dy /= distance
         gap = max(0.0, distance - 2.0 * radius)
@@ -98,7 +99,7 @@ def _meet_bodies(m: Memory, fastest: float) -> None:
 
 @compiled
 def _meet_walls(m: Memory) -> None:
-    """Find the robots that would leave the arena."""
+    """Find the robots that would leave the arena, and the part of each motion that is blocked."""
     positions, radius, half = m.positions, m.scalars["radius"][0], m.scalars["half"][0]
     move_x, move_y, count = m.work["move_x"], m.work["move_y"], m.work["count"]
     for i in range(len(positions)):

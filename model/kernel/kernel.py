@@ -20,7 +20,7 @@ _MAX_CELLS: Final = 1024
 
 
 class Kernel:
-    """Moves the bodies of one game; writes the state arrays `states`.
+    """Moves the bodies of one game in the state arrays `states`.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ def make_scalars(game: Game, arena: Arena) -> Records:
     }
     for name, value in values.items():
         scalars[name] = value
-    # Two robots that meet head on approach by two strides in a period; relaxation may add three each.
+    # In a period, two robots approach by at most two strides, and relaxation moves each by up to three more.
     touching = 2 * radius + 8 * fastest
     scalars["pair_reach"] = np.maximum(scalars["conflict_reach"], touching) + scalars["skin"]
     farthest = np.maximum(scalars["flight_range"], scalars["active_range"])

@@ -1,7 +1,7 @@
 """Neighbours: a grid of cells and a list of near pairs. Compiled.
 
-Both are kept while bodies stay close. The list has all pairs within a cut-off plus a skin; no pair within the
-cut-off is missing until a body has moved farther than half the skin.
+The list has all pairs within a cut-off plus a skin, so no pair within the cut-off is missing until a body has
+moved farther than half the skin. Grid and list are rebuilt then.
 """
 
 import math
@@ -25,7 +25,7 @@ def cell_of(coordinate: float, half: float, cells: int) -> int:
 
 @compiled
 def refresh(m: Memory) -> bool:
-    """List cells and pairs if a body has moved too far since the last listing; return whether it did.
+    """Rebuild cells and pairs if a body has moved too far since the last rebuild; return whether it did.
 
     Raise a ValueError if bodies overlap so much that the pairs do not fit in ``m.pairs``.
     """
@@ -35,7 +35,7 @@ def refresh(m: Memory) -> bool:
     for i in range(len(positions)):
         dx = positions[i, 0] - origin_x[i]
         dy = positions[i, 1] - origin_y[i]
-        if not dx * dx + dy * dy <= limit:  # true for NaN, before the first listing
+        if not dx * dx + dy * dy <= limit:  # true for NaN, before the first rebuild
             is_valid = False
             break
     if is_valid:
@@ -94,7 +94,7 @@ def _list_pairs(m: Memory, cells: int) -> int:
                 dy = positions[j, 1] - y
                 if dx * dx + dy * dy < reach * reach:
                     if size == len(first):
-                        raise ValueError("more near pairs than bodies that do not overlap can form")
+                        raise ValueError("too many pairs of neighbours: bodies overlap")
                     first[size] = i
                     second[size] = j
                     size += 1
@@ -106,7 +106,7 @@ def within(m: Memory, x: float, y: float, distance: float) -> int:
     """List the robots of all cells that a disc touches in ``m.work["found"]``; return their number.
 
     The disc has its centre at (x, y) and the radius `distance` (m). All robots that were in the disc at the
-    last listing are included.
+    last rebuild are included.
     """
     cell_start, cell_robots, found = m.cell_start, m.work["cell_robots"], m.work["found"]
     half = m.scalars["half"][0]

@@ -27,21 +27,21 @@ _PASSES: Final = 200
 _ROUNDS: Final = 200
 """Maximum number of searches."""
 _STUCK: Final = 1000
-"""Passes after which the relaxation assumes a straight row between walls, which passes alone cannot part."""
+"""Passes after which the relaxation assumes a straight row between walls, which passes cannot separate."""
 _TURN: Final = 0.01
 """Turn of the pairs of such a row (rad)."""
 _FORGET_AFTER: Final = 4
 _FORGET_EVERY: Final = 8
-"""Passes after which pairs at rest are removed: most of a jam is resolved long before its worst part."""
+"""First pass, and period in passes, of removing pairs at rest: most of a jam is resolved early."""
 _TOUCH: Final = 1e-9
-"""Maximum overlap of bodies that only touch; the rounding error of parted bodies is smaller (m)."""
+"""Maximum overlap of bodies that only touch; rounding errors of separated bodies are smaller (m)."""
 _AT_REST: Final = 1e-5
 """Maximum move of a pair at rest in one pass (m)."""
 
 
 @compiled
 def relax(positions: Floats, radius: float, half: float, work: Records, pairs: Records, n_pairs: int) -> int:
-    """Part overlapping bodies and keep them within the walls.
+    """Separate overlapping bodies and keep them within the walls.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def relax(positions: Floats, radius: float, half: float, work: Records, pairs: R
             worst = _measure_overlaps(positions, radius, work, pairs, n_close)
             if worst <= TOLERANCE:
                 break
-            _part(positions, limit, work, n_queued, _momentum(done))
+            _move_bodies(positions, limit, work, n_queued, _momentum(done))
             done += 1
     return -1
 
@@ -123,7 +123,7 @@ def _find_close(positions: Floats, radius: float, pairs: Records, n_pairs: int) 
 
 @compiled
 def _bend(positions: Floats, radius: float, work: Records, pairs: Records, n_close: int) -> None:
-    """Turn each overlapping pair a little about its middle, all in the same sense, out of their row."""
+    """Rotate each overlapping pair slightly about its centre, all in the same sense, to break the row."""
     close_first, close_second = pairs["close_first"], pairs["close_second"]
     shove_x, shove_y = work["shove_x"], work["shove_y"]
     for c in range(n_close):
@@ -174,7 +174,7 @@ def _forget_resting(positions: Floats, radius: float, work: Records, pairs: Reco
 
 @compiled
 def _measure_overlaps(positions: Floats, radius: float, work: Records, pairs: Records, n_close: int) -> float:
-    """Sum half of each overlap for each body; return the greatest overlap (m)."""
+    """Add half of each overlap to the corrections of both bodies; return the greatest overlap (m)."""
     close_first, close_second = pairs["close_first"], pairs["close_second"]
     shove_x, shove_y, count = work["shove_x"], work["shove_y"], work["count"]
     worst = 0.0
@@ -186,7 +186,7 @@ def _measure_overlaps(positions: Floats, radius: float, work: Records, pairs: Re
         distance = math.sqrt(dx * dx + dy * dy)
         overlap = max(0.0, 2.0 * radius - distance)
         worst = max(worst, overlap)
-        if distance == 0.0:  # exactly on top of each other: part them along x
+        if distance == 0.0:  # exactly on top of each other: separate them along x
             dx, distance = 1.0, 1.0
         part = 0.5 * overlap / distance
         shove_x[i] -= part * dx
@@ -207,8 +207,8 @@ def _momentum(done: int) -> float:
 
 
 @compiled
-def _part(positions: Floats, limit: float, work: Records, n_queued: int, momentum: float) -> None:
-    """Move the queued bodies by their summed overlaps, within the walls, and reset the sums.
+def _move_bodies(positions: Floats, limit: float, work: Records, n_queued: int, momentum: float) -> None:
+    """Move the queued bodies by their summed corrections, within the walls, and reset the sums.
 
     A body without overlap loses its momentum, which would push it into the next body.
     """

@@ -18,7 +18,7 @@ import pytest
 
 from kswarms.agents.actions import AWAY, Action
 from kswarms.agents.conformance import POLICY_CHECKS
-from kswarms.agents.conformance.policies import TWO, play_conflicts, setting, settings
+from kswarms.agents.conformance.policies import TWO_ACTIONS, make_setting, make_settings, play_conflicts
 from kswarms.agents.learning.rewards import REWARDS, Reward, make_reward
 from kswarms.agents.learning.selection_rules import RULES, Rule, make_rule
 from kswarms.agents.policies.interface import Policy, Setting
@@ -33,12 +33,12 @@ ARGUMENTS = {"learned": "(file={file!r})"}
 TEXTS = [
     *(name + ARGUMENTS.get(name, "") for name in POLICIES),
     *(f"learner(reward='{reward}', rule='{rule}')" for reward, rule in product(REWARDS, RULES)),
-    *TWO[0].name.split(),
+    *TWO_ACTIONS[0].name.split(),
 ]
 
 
 def check_repr_tells_the_swarm_and_no_address(build: Factory) -> None:
-    text = repr(build(setting(swarm=1)))
+    text = repr(build(make_setting(swarm=1)))
     assert "swarm=1" in text
     assert " at 0x" not in text
     assert len(text.splitlines()) == 1
@@ -46,7 +46,7 @@ def check_repr_tells_the_swarm_and_no_address(build: Factory) -> None:
 
 def check_a_frozen_learner_ignores_conflicts(build: Factory) -> None:
     """After freeze(), learn(…) changes nothing and returns NaN."""
-    for where in settings():
+    for where in make_settings():
         policy = build(where)
         if not hasattr(policy, "learn"):
             continue
@@ -60,7 +60,7 @@ def check_a_frozen_learner_ignores_conflicts(build: Factory) -> None:
 
 
 def check_copies_look_alike(build: Factory) -> None:
-    policy = build(where := setting())
+    policy = build(where := make_setting())
     play_conflicts(policy, where, conflicts=17)
     assert repr(copy.deepcopy(policy)) == repr(pickle.loads(pickle.dumps(policy))) == repr(policy)
 
@@ -143,7 +143,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[int, str]:
     """Return files of learned policies by swarm."""
     folder, paths = tmp_path_factory.mktemp("learned"), {}
     for swarm in range(3):
-        learner = Learner(where := setting(swarm))
+        learner = Learner(where := make_setting(swarm))
         play_conflicts(learner, where)
         paths[swarm] = str(Path(folder, f"swarm-{swarm + 1}.json"))
         save_learned(Path(paths[swarm]), swarm + 1, [learner.snapshot()])

@@ -194,7 +194,7 @@ def test_bodies_that_cannot_be_parted_are_an_error() -> None:
     kernel = scene.kernel()
     kernel.memory.scalars["radius"] = 0.11
     assert kernel.advance(0, 1)[0] == 0  # stops at the first decision
-    with pytest.raises(ValueError, match="nothing parts them"):
+    with pytest.raises(ValueError, match="overlapping bodies cannot be separated"):
         kernel.advance(0, 1)
 
 

@@ -53,7 +53,7 @@ def test_places_and_headings_are_uniform() -> None:
 
 
 def test_robots_without_room_are_refused() -> None:
-    with pytest.raises(InputError, match=r"^n=9: robots of radius 0.2 m find no place in a square of 1.0 m$"):
+    with pytest.raises(InputError, match=r"^n=9: robots of radius 0.2 m do not fit in a square of 1.0 m$"):
         start_poses(9, 0, 0.5, 0.2, 0.0, 0.0)
 
 

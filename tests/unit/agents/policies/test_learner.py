@@ -9,16 +9,16 @@ from scipy.stats import chisquare
 
 from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.conformance.policies import TWO, setting
+from kswarms.agents.conformance.policies import TWO_ACTIONS, make_setting
 from kswarms.agents.policies.learner import Learner
 from kswarms.agents.policies.saved import snapshot_of
 from kswarms.agents.policies.spec import make_policy
 
-FLIGHT, FIGHT = TWO
+FLIGHT, FIGHT = TWO_ACTIONS
 
 
 def learner(text: str = "learner", **where: Any) -> Learner:
-    policy = make_policy(text, setting(**where))
+    policy = make_policy(text, make_setting(**where))
     assert isinstance(policy, Learner)
     return policy
 
@@ -52,7 +52,7 @@ def test_there_is_a_bandit_for_each_swarm_learned_about(text: str, about: set[in
 def test_the_fixed_action_against_other_swarms_is_an_argument() -> None:
     policy = learner("intra-learner(otherwise='fight')")
     assert {policy.choose(0) for _ in range(20)} == {FIGHT}
-    assert make_policy("inter-learner", setting(actions=(FIGHT, FLIGHT))).choose(1) == FLIGHT
+    assert make_policy("inter-learner", make_setting(actions=(FIGHT, FLIGHT))).choose(1) == FLIGHT
 
 
 def test_a_conflict_rewards_the_arm_that_was_chosen_for_it() -> None:
@@ -157,7 +157,7 @@ def test_a_frozen_learner_chooses_the_best_action_and_learns_nothing(
 
 def test_a_frozen_learner_without_data_flees() -> None:
     for actions in ((FLIGHT, FIGHT), (FIGHT, FLIGHT)):
-        policy = make_policy("learner", setting(actions=actions))
+        policy = make_policy("learner", make_setting(actions=actions))
         assert isinstance(policy, Learner)
         policy.choose(0)  # chosen, but never closed: no data
         policy.freeze()
@@ -176,11 +176,11 @@ def test_a_snapshot_has_all_learned_values() -> None:
         assert (row["reward"], row["time"], row["count"]) == sums
         assert row["q"] == bandit.value(arm) or (row["count"] == 0 and math.isnan(row["q"]))
     assert repr(snapshot_of(policy)) == repr(rows)
-    assert snapshot_of(make_policy("avoid", setting())) == []
+    assert snapshot_of(make_policy("avoid", make_setting())) == []
 
 
 def test_the_random_policy_fights_others_half_of_the_time_and_its_own_swarm_never() -> None:
-    policy = make_policy("random", setting(swarms=3))
+    policy = make_policy("random", make_setting(swarms=3))
     assert {policy.choose(1) for _ in range(100)} == {FLIGHT}
     counts = Counter((opponent, policy.choose(opponent).name) for _ in range(2000) for opponent in (0, 2))
     assert chisquare(list(counts.values())).pvalue > 1e-4
@@ -189,5 +189,5 @@ def test_the_random_policy_fights_others_half_of_the_time_and_its_own_swarm_neve
 
 def test_an_inter_learner_needs_another_swarm() -> None:
     with pytest.raises(InputError, match=r"^policy.about='inter': needs another swarm"):
-        make_policy("inter-learner", setting(swarm=0, swarms=1))
+        make_policy("inter-learner", make_setting(swarm=0, swarms=1))
     assert set(learner(swarm=0, swarms=1).bandits) == {0}

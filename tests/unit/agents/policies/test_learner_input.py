@@ -3,11 +3,11 @@
 import pytest
 
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.conformance.policies import setting
+from kswarms.agents.conformance.policies import make_setting
 from kswarms.agents.policies.spec import make_policy
 from kswarms.model.foraging import ForagingModel
 
-SETTING = setting()
+SETTING = make_setting()
 
 # Policy, field, how the value looks, a part of what is allowed.
 WRONG = [

@@ -9,7 +9,7 @@ import pytest
 
 from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.conformance.policies import TWO, setting
+from kswarms.agents.conformance.policies import TWO_ACTIONS, make_setting
 from kswarms.agents.learning.rewards import WLU
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.learner import Learner
@@ -36,8 +36,8 @@ def test_a_text_is_parsed_once_and_printed_as_written() -> None:
 
 
 def test_robots_of_a_policy_share_reward_and_rule_but_no_bandit() -> None:
-    factory = parse_policies("learner(reward='wlu(delta=0.2)')")[0].factory(TWO)
-    one, other = (factory(setting(robot=robot)) for robot in (0, 1))
+    factory = parse_policies("learner(reward='wlu(delta=0.2)')")[0].factory(TWO_ACTIONS)
+    one, other = (factory(make_setting(robot=robot)) for robot in (0, 1))
     assert isinstance(one, Learner)
     assert isinstance(other, Learner)
     assert one.reward is other.reward
@@ -50,7 +50,7 @@ def test_a_class_and_a_partial_have_the_text_that_loads_them() -> None:
     for given, text in ((Patient, name), (partial(Patient, patience=2), f"{name}(patience=2)")):
         (spec,) = parse_policies(given)
         assert spec.text == str(spec) == text
-        assert vars(spec.build(setting())) == vars(given(setting()))
+        assert vars(spec.build(make_setting())) == vars(given(make_setting()))
         assert spec.is_user_defined
 
 
@@ -80,7 +80,7 @@ def test_local_classes_can_be_built() -> None:
         pass
 
     (spec,) = parse_policies(Local)
-    assert isinstance(spec.build(setting()), Local)
+    assert isinstance(spec.build(make_setting()), Local)
     assert str(spec).endswith("Local")
 
 
@@ -101,7 +101,7 @@ def test_literal_arguments_are_not_shared_between_robots(
     monkeypatch.chdir(tmp_path)
     code = "class Mine:\n    def __init__(self, setting, met): self.met = met\n    choose = __init__\n"
     Path("mine.py").write_text(code)
-    one, other = (make_policy("mine.py:Mine(met=[])", setting()) for _ in range(2))
+    one, other = (make_policy("mine.py:Mine(met=[])", make_setting()) for _ in range(2))
     assert vars(one) == vars(other) == {"met": []}
     assert vars(one)["met"] is not vars(other)["met"]
 

@@ -89,7 +89,7 @@ WRONG = [
     ("own.py:Library", "policy='own.py:Library': its trial raises ValueError: ", at("np.concatenate")),
     ("own.py:Silent", "policy='own.py:Silent': learn(…) must return two floats, R and Q, not None", ""),
     ("own.py:Stuck", "policy='own.py:Stuck': its trial raises RuntimeError: cannot stop ", at("cannot")),
-    ("own.py:Boastful", "policy='own.py:Boastful': snapshot() must be as that of a Learner (", "'count')"),
+    ("own.py:Boastful", "policy='own.py:Boastful': snapshot() must be like Learner.snapshot() (", "'count')"),
     ("learner(reward='own.py:Void')", "policy.reward='own.py:Void': Void must define of", ""),
     ("learner(reward='own.py:First')", "policy.reward='own.py:First': must be a subclass of kswarms.", ""),
     ("learner(reward='own.py:NaN')", "policy.reward='own.py:NaN': of(2.3, 0.0, ", "not nan"),
