@@ -20,14 +20,14 @@ from kswarms.scenarios.description.condition import Condition, SwarmRule
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.study.study import Study
 
-MAX_TIMES_BARE: Final = 5.0
-MIN_THROUGHPUT: Final = 80_000
+MAX_TIMES_BARE: Final = 5.0  # times the CPU time of a bare SimPy loop
+MIN_THROUGHPUT: Final = 80_000  # robot-seconds per CPU second
 MIN_LEARNING_THROUGHPUT: Final = 60_000
-MAX_GROWTH: Final = 1.5
-MAX_MEMORY: Final = 300
+MAX_GROWTH: Final = 1.5  # of the cost at the largest N, relative to the smallest
+MAX_MEMORY: Final = 300  # MB
 MAX_SECONDS_TO_GAME: Final = 5.0
-MAX_OVERHEAD: Final = 5.0
-CONTEXT: Final = "ARGoS 3 without simulated sensors 8,475; Enki with sensors 53,700"
+MAX_OVERHEAD: Final = 5.0  # CPU time per run, apart from its game (ms)
+OTHER_SIMULATORS: Final = "ARGoS 3 without simulated sensors 8,475; Enki with sensors 53,700"
 
 _COUNTS: Final = ["S1 / S2", "N", "timeouts", "events", "conflicts"]
 _TIMES: Final = ["best ms", "median ms", "robot-s/CPU-s", "× bare loop", "timeouts only"]
@@ -78,7 +78,7 @@ def growth(sizes: Sequence[int], duration: float, repetitions: int) -> list[list
 def peak_memory(code: str) -> float:
     """Return the peak resident memory (MB) of a new interpreter that runs `code`.
 
-    It is the kernel's number for the address space; ``ru_maxrss`` of a child starts at the parent's peak.
+    It reads ``VmHWM`` of the new process; ``ru_maxrss`` of a child starts at the peak of its parent.
     """
     report = "print([line for line in open('/proc/self/status') if line.startswith('VmHWM')][0].split()[1])"
     return float(_run_python(f"{code}\n{report}").split()[-1]) * 1024 / 1e6
@@ -102,7 +102,7 @@ def _run_python(code: str, *arguments: str) -> str:
 
 
 def overhead(runs: int, jobs: int) -> list[str]:
-    """Return a row of the table of the cost of a study, apart from its games of 1 s.
+    """Return a row of the table of overhead: the cost of a study besides its games of 1 s.
 
     The cost is the CPU time of all processes, including their start, less that of the games. Memory is the
     growth of the storing process between the first tenth of the runs and the last run.
@@ -162,15 +162,15 @@ def main(
     runs : int
         Number of tiny games in the study.
     """
-    compiling = Plan("avoid,attack", 6, 10.0)
-    time_game(compiling, 0, count_work(compiling, 0))
+    warm_up = Plan("avoid,attack", 6, 10.0)
+    time_game(warm_up, 0, count_work(warm_up, 0))  # compiles the kernels
     kinds = (("avoid,attack", 50), ("attack,attack", 50), ("avoid,attack", 6), ("attack,attack", 6))
     print_table(
         f"CPU time of a game of {duration:g} s, recording off, {seeds} seeds, best of {repetitions} each",
         [*_COUNTS, *_TIMES],
         [speed(Plan(policies, n, duration), range(seeds), repetitions) for policies, n in kinds],
         f"bounds, avoid / attack at N = 50: ≤ {MAX_TIMES_BARE:g} × a bare SimPy loop with as many events, "
-        f"≥ {MIN_THROUGHPUT:,} robot-s/CPU-s\n  ({CONTEXT})\n"
+        f"≥ {MIN_THROUGHPUT:,} robot-s/CPU-s\n  ({OTHER_SIMULATORS})\n"
         "  timeouts: legs, turns, flights and fights of robots; events: timeouts and waits of the motion\n"
         "  process; × bare loop: relative to a loop with as many events, or as many timeouts",
     )

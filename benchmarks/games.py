@@ -1,6 +1,6 @@
 """Work and CPU time of single games.
 
-A timed game must do the same work as a counted game of the same seed, or `WorkError` ends the benchmark.
+A timed game must do the same work as a counted game of the same seed; otherwise `WorkError` is raised.
 """
 
 import time
@@ -15,7 +15,7 @@ from kswarms.model.foraging import ForagingModel
 
 
 class WorkError(RuntimeError):
-    """A game did not do the work that it is timed for."""
+    """A timed game did not do the counted work."""
 
 
 class Work(NamedTuple):
@@ -62,7 +62,7 @@ def count_work(plan: Plan, seed: int) -> Work:
     Raises
     ------
     WorkError
-        The robots' times do not add up to the duration of the game, or robots or conflicts are missing.
+        If the robots' times do not add up to the duration of the game, or robots or conflicts are missing.
     """
     model = plan.model(seed)
     kinds: Counter[type[Event]] = Counter()
@@ -92,7 +92,7 @@ def time_game(plan: Plan, seed: int, work: Work) -> tuple[float, float]:
     Raises
     ------
     WorkError
-        The game did not do the work that was counted for this seed.
+        If the game did not do the work that was counted for this seed.
     """
     start = time.process_time()
     model = plan.model(seed)

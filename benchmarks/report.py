@@ -1,4 +1,4 @@
-"""Benchmark of the report on a complete study of random numbers, made in a new process.
+"""Benchmark of the report on a complete study of random numbers, in a new process.
 
 As a script it prints time, memory and size, and exits with 1 if time or memory is above its bound.
 """
@@ -37,7 +37,7 @@ def write_study(
     densities: int | None = None,
     seeds: int | None = None,
 ) -> int:
-    """Write `runs.parquet` and `policies.parquet` with random numbers in place of the outcomes of games.
+    """Write `runs.parquet` and `policies.parquet` with random numbers instead of results of games.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ from kswarms.analysis.measures.contribution import (
     time_sud,
 )
 from kswarms.analysis.measures.utilities import robot_utilities, utilities_by_swarm
-from kswarms.scenarios.contribution.games import contributions, robots_of
+from kswarms.scenarios.contribution.games import contributions, parse_robots
 
 # %% [markdown]
 # ## A game in normal form
@@ -97,7 +97,7 @@ axes.set(xlabel="utility of the robot, U (s)", ylabel="Wonderful Life Utility, W
 # contribution fig-6.4b` does this for a scenario.
 
 # %%
-rows = contributions(game, robots_of(game, "8,9"), range(6), label=("avoid-attack", ""), time_sud=time_sud)
+rows = contributions(game, parse_robots(game, "8,9"), range(6), label=("avoid-attack", ""), time_sud=time_sud)
 question = select_contributions(pd.DataFrame(rows))
 question[["seed", "robot", "sud", "sud_without", "pucks", "reward"]].head(4).round(2)
 

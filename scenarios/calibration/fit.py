@@ -1,7 +1,7 @@
-"""Fit of the free parameters of section 2.7 to Table 6.1 with CMA-ES, by what the robots of Fig. 6.4 learn.
+"""Fit of the free parameters (section 2.7) to Table 6.1 with CMA-ES, on the learning games of Fig. 6.4.
 
 Errors are noisy. All candidates of a generation are measured on the same seeds, and each generation has its
-own seeds. The result is the mean of the search distribution, not the luckiest candidate. It is compared with
+own seeds. The result is the mean of the search distribution, not the best candidate. It is compared with
 the start values on seeds that the fit does not use.
 
 The search depends only on its setup and on the measured shares. To resume, the search runs again and finds
@@ -21,7 +21,7 @@ from kswarms.agents.common.arrays import Floats
 from kswarms.agents.common.atomic_files import remove_temporary_files
 from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
-from kswarms.scenarios.calibration.games import START, Candidate, Cell, texts_of, to_candidate, to_place
+from kswarms.scenarios.calibration.games import START, Candidate, Cell, texts_of, to_candidate, to_position
 from kswarms.scenarios.calibration.shares import Play, Shares
 from kswarms.scenarios.description.scenario import DENSITIES
 from kswarms.scenarios.study.directory import make_directory, write_json
@@ -29,7 +29,7 @@ from kswarms.scenarios.study.directory import make_directory, write_json
 SPREAD: Final = 0.15
 """Standard deviation of the first generation, relative to the search range."""
 VALIDATION_SEED: Final = 1000
-"""First seed of the validation. The seeds of the catalogue, from 0, stay unused, to judge the result."""
+"""First seed of the validation. Seeds of the catalogue (from 0) stay unused, to judge the result."""
 FIT_SEED: Final = 10_000
 """First seed of the first generation."""
 _SHARES: Final = "shares.json"
@@ -48,7 +48,7 @@ class Setup(FrozenModel):
     densities: tuple[int, ...] = Field(DENSITIES, min_length=1)  # the fitted rows of Table 6.1, by N
     seeds: int = Field(4, ge=1, le=1000)  # games for each cell and candidate
     generations: int = Field(25, ge=1, le=10_000)
-    population: int = Field(0, ge=0, le=10_000)  # 0: the usual number, 4 + 3 ln(parameters)
+    population: int = Field(0, ge=0, le=10_000)  # 0: default of CMA-ES, 4 + 3 ln(parameters)
     validation_seeds: int = Field(20, ge=6, le=FIT_SEED - VALIDATION_SEED)  # fewer than 6 have no interval
 
     @model_validator(mode="after")
@@ -59,7 +59,9 @@ class Setup(FrozenModel):
         if len(set(self.free)) < max(2, len(self.free)):
             raise InputError("free", ",".join(self.free), "must be two or more different parameters")
         if 0 < self.population < 4:
-            raise InputError("population", self.population, "must be at least 4, or 0 for the usual number")
+            raise InputError(
+                "population", self.population, "must be at least 4, or 0 for the default of CMA-ES"
+            )
         return self
 
     @property
@@ -71,8 +73,8 @@ class Setup(FrozenModel):
 def error_of(shares: Floats, target: Floats) -> Floats:
     """Return the mean absolute error over cells (percentage points), shape (…).
 
-    `shares`, shape (…, cells), are the learners that learned to attack, a mean over seeds; `target`, shape
-    (cells,), are the published shares (percent).
+    `shares`, shape (…, cells), are the shares of learners that learned to attack, averaged over seeds;
+    `target`, shape (cells,), are the published shares (percent).
     """
     return np.asarray(np.abs(100.0 * shares - target).mean(axis=-1))
 
@@ -86,7 +88,7 @@ def calibrate(
     fresh: bool = False,
     report: Callable[[str], None] = lambda _: None,
 ) -> dict[str, Any]:
-    """Search, validate, and decide whether the result beats the start values.
+    """Search, validate, and decide whether the result is better than the start values.
 
     Parameters
     ----------
@@ -112,7 +114,7 @@ def calibrate(
     for n in setup.densities:
         if n not in rows:
             raise InputError("densities", n, f"must be among {', '.join(map(str, rows))}, as in Table 6.1")
-    shares = _open(setup, play, out, fresh)
+    shares = _open_shares(setup, play, out, fresh)
     fitted = start = setup.start
     trace: dict[str, Any] = {"setup": setup.model_dump(mode="json"), "start": start, "generations": []}
     for generation in _search(setup, target, shares):
@@ -148,7 +150,7 @@ def summary(trace: dict[str, Any]) -> list[str]:
     ]
 
 
-def _open(setup: Setup, play: Play, out: Path, fresh: bool) -> Shares:
+def _open_shares(setup: Setup, play: Play, out: Path, fresh: bool) -> Shares:
     """Create the directory and return the shares in it."""
     comparable = setup.model_dump(mode="json", include={"densities", "seeds", "population"})
     comparable["start"] = setup.start
@@ -172,17 +174,17 @@ def _search(
     options = {
         "bounds": [0.0, 1.0],
         "randn": lambda *shape: draws.standard_normal(shape),
-        "seed": math.nan,  # leaves numpy's global generator alone
+        "seed": math.nan,  # does not seed numpy's global generator
         "verbose": -9,
     } | ({"popsize": setup.population} if setup.population else {})
-    strategy = cma.CMAEvolutionStrategy(to_place(setup.start), SPREAD, options)
+    strategy = cma.CMAEvolutionStrategy(to_position(setup.start), SPREAD, options)
     for generation in range(setup.generations):
         first_seed = FIT_SEED + generation * setup.seeds
-        places = strategy.ask()
-        candidates = [to_candidate(setup.free, place) for place in places]
+        positions = strategy.ask()
+        candidates = [to_candidate(setup.free, position) for position in positions]
         measured = shares.measure(candidates, cells, range(first_seed, first_seed + setup.seeds))
         errors = [float(error_of(each.mean(axis=1), wanted)) for each in measured]
-        strategy.tell(places, errors)
+        strategy.tell(positions, errors)
         yield {
             "first_seed": first_seed,
             "points": candidates,

@@ -1,4 +1,4 @@
-"""Candidates of a calibration, and the games of Table 6.1 that judge them."""
+"""Candidates of a calibration, and the games that measure their error against Table 6.1."""
 
 import math
 from collections.abc import Sequence
@@ -30,7 +30,7 @@ START: Final[Candidate] = {
 SPAN: Final = 2.0
 """The search range is from start / `SPAN` to start × `SPAN`, on a logarithmic scale."""
 LIMITS: Final = {"base_radius": 0.2, "push_share": 0.5}
-"""Upper limits: a base must not touch the wall (m); a parameter that starts at 0 has a linear scale."""
+"""Upper limits. A base must not touch the wall (m). A start value of 0 requires a linear scale."""
 
 
 def texts_of(candidate: Candidate) -> tuple[str, str]:
@@ -53,23 +53,23 @@ def learning_game(cell: Cell, candidate: Candidate) -> Game:
     )
 
 
-def to_candidate(free: Sequence[str], place: Floats) -> Candidate:
-    """Return the candidate at a place of the unit cube, with values of four significant digits."""
+def to_candidate(free: Sequence[str], position: Floats) -> Candidate:
+    """Return the candidate at a position in the unit cube, with values of four significant digits."""
     candidate = {}
-    for name, part in zip(free, place, strict=True):
+    for name, part in zip(free, position, strict=True):
         low, high = _range_of(name)
         value = low * (high / low) ** part if low > 0 else high * part
         candidate[name] = float(f"{value:.4g}")
     return candidate
 
 
-def to_place(candidate: Candidate) -> Floats:
-    """Return the place of a candidate in the unit cube."""
-    place = []
+def to_position(candidate: Candidate) -> Floats:
+    """Return the position of a candidate in the unit cube."""
+    position = []
     for name, value in candidate.items():
         low, high = _range_of(name)
-        place.append(math.log(value / low, high / low) if low > 0 else value / high)
-    return np.array(place)
+        position.append(math.log(value / low, high / low) if low > 0 else value / high)
+    return np.array(position)
 
 
 def _range_of(name: str) -> tuple[float, float]:

@@ -27,8 +27,8 @@ _SAVE_EVERY: Final = 5.0
 class Shares:
     """The shares measured so far, stored in a JSON file.
 
-    `setup` are the settings that all shares of the file have in common. A file of another setup or of
-    something else is refused. `play` plays the missing runs.
+    `setup` are the settings that all shares of the file have in common. A file with another setup or
+    other content is refused. `play` plays the missing runs.
     """
 
     def __init__(self, path: Path, setup: dict[str, Any], play: Play) -> None:
@@ -71,7 +71,7 @@ def _read(path: Path, setup: dict[str, Any]) -> dict[str, float]:
         content = json.loads(path.read_text())
         found, shares = dict(content["setup"]), dict(content["shares"])
     except (ValueError, TypeError, KeyError) as error:
-        raise InputError("out", str(path.parent), f"holds a {path.name} of something else") from error
+        raise InputError("out", str(path.parent), f"has a {path.name} that is no file of a fit") from error
     if found != setup:
-        raise InputError("out", str(path.parent), "holds a fit of another setup: name another, or --fresh")
+        raise InputError("out", str(path.parent), "has another setup; use another directory, or --fresh")
     return shares

@@ -14,7 +14,7 @@ CATALOGUE: Final = {scenario.id: scenario for scenario in (*SYMMETRIC, *DISADVAN
 
 
 class SourceTable(NamedTuple):
-    """A table of the source: learned policies of some figures; `scenarios` are their ids."""
+    """A table of the source about learned policies. `scenarios` are the ids of its figures."""
 
     title: str
     scenarios: tuple[str, ...]

@@ -31,7 +31,7 @@ def _from_catalogue(name: str) -> list[Scenario]:
     if name not in CATALOGUE and name not in TABLES:
         near = difflib.get_close_matches(name, [*CATALOGUE, *TABLES], cutoff=0.5)
         hint = f"did you mean {' or '.join(near)}?" if near else "see `kswarms list`"
-        raise InputError("id", name, f"must be in the catalogue; {hint}")
+        raise InputError("id", name, f"must be a scenario or table; {hint}")
     return [CATALOGUE[each] for each in (TABLES[name].scenarios if name in TABLES else [name])]
 
 

@@ -1,4 +1,4 @@
-"""The command line ``kswarms``: a module for each command, `app` puts them together."""
+"""The command line ``kswarms``: a module for each command. `app` registers them."""
 
 from kswarms.scenarios.cli.app import invoke, main
 

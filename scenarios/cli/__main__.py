@@ -1,4 +1,4 @@
-"""``python -m kswarms.scenarios.cli`` is ``kswarms``."""
+"""Run ``kswarms`` as ``python -m kswarms.scenarios.cli``."""
 
 from kswarms.scenarios.cli.app import main
 

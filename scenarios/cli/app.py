@@ -22,7 +22,7 @@ COMMANDS: Final = {
     "list": ("catalogue", "list_scenarios", "List scenarios and tables, with their cost."),
     "show": ("catalogue", "show", "Print a scenario as TOML, ready to edit."),
     "run": ("run", "run", "Play scenarios; write tables and figures."),
-    "status": ("status", "status", "Show what is done and what failed, and why."),
+    "status": ("status", "status", "Show finished and failed runs, with errors."),
     "replay": ("status", "replay", "Play one run again and compare the results."),
     "calibrate": ("calibrate", "calibrate", "Fit the free parameters to Table 6.1."),
     "explore": ("explore", "explore", "Open a page to watch and change games."),
@@ -35,7 +35,7 @@ COMMANDS: Final = {
 
 
 class LazyGroup(TyperGroup):
-    """Group of commands. It imports a command when it is called; help and completion need only its name."""
+    """Group that imports a command when it is called. Help and completion need only its name."""
 
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
         """Return name, command and remaining arguments."""
@@ -59,7 +59,9 @@ app = typer.Typer(
     "Exit status: 0 done, 1 failed, 2 bad input, 130 interrupted.",
 )
 for _name, (_, _, _short) in COMMANDS.items():
-    app.command(_name, short_help=_short)(lambda: None)  # replaced by `LazyGroup.resolve_command`
+    app.command(_name, short_help=_short)(
+        lambda: None
+    )  # a placeholder; `LazyGroup.resolve_command` loads the command
 
 
 def main() -> None:
@@ -68,7 +70,7 @@ def main() -> None:
 
 
 def invoke(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit status, as `--help` explains it.
+    """Run the command line and return its exit status, which `--help` documents.
 
     `arguments` are the words after ``kswarms``; the default is the arguments of this process.
     """
@@ -92,7 +94,7 @@ def invoke(arguments: Sequence[str] | None = None) -> int:
 
 
 def _describe(error: typer.BadParameter) -> str:
-    """Return option, value and rule in the form of `InputError`; the message of typer lacks the value."""
+    """Return option, value and rule in the format of `InputError`; the message of typer lacks the value."""
     cause = error.__cause__
     if not isinstance(cause, ValidationError) or error.param is None:
         return error.format_message()

@@ -27,18 +27,24 @@ def calibrate(
             metavar="N,N,...", help="Rows of Table 6.1 to fit: 6,10,16,20,26,30,36,40,46,50. [default: all]"
         ),
     ] = None,
-    seeds: Annotated[int, typer.Option(help="Games for each cell and candidate, at least 1.")] = 4,
+    seeds: Annotated[
+        int, typer.Option(help="Games for each candidate and cell of the table, at least 1.")
+    ] = 4,
     generations: Annotated[int, typer.Option(help="Generations of the search, at least 1.")] = 25,
     population: Annotated[
-        int, typer.Option(help="Candidates in a generation, at least 4; 0 for the usual number.")
+        int, typer.Option(help="Candidates in a generation, at least 4; 0 for the default of CMA-ES.")
     ] = 0,
-    validation_seeds: Annotated[int, typer.Option(help="Games for each cell to validate, at least 6.")] = 20,
+    validation_seeds: Annotated[
+        int, typer.Option(help="Games for each cell in the validation, at least 6.")
+    ] = 20,
     jobs: Jobs = CPUS,
     out: Annotated[
         Path,
         typer.Option(parser=parse_directory, metavar="DIR", help="Output directory; a fit in it is resumed."),
     ] = Path("calibration"),
-    fresh: Annotated[bool, typer.Option("--fresh", help="Delete the fit in DIR and start again.")] = False,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Delete the fit in DIR and start a new one.")
+    ] = False,
 ) -> None:
     """Fit the free parameters to Table 6.1. The same command resumes an interrupted fit.
 

@@ -1,4 +1,4 @@
-"""``list`` and ``show``: the scenarios that can be played."""
+"""``list`` and ``show``: the scenarios of the catalogue."""
 
 from collections.abc import Iterable
 from typing import Annotated
@@ -15,7 +15,7 @@ from kswarms.scenarios.runs.run import cpu_seconds
 
 
 def list_scenarios() -> None:
-    """List the scenarios and tables of the catalogue, with the CPU time that they take.
+    """List the scenarios and tables of the catalogue, with their estimated CPU time.
 
     Example: kswarms list
     """
@@ -29,7 +29,7 @@ def list_scenarios() -> None:
 
 
 def _cost(scenarios: Iterable[Scenario]) -> tuple[str, str, str]:
-    """Return the number of curves and runs and their CPU time; equal runs count once."""
+    """Return the numbers of curves and runs, and the CPU time; equal runs count once."""
     seeds: dict[tuple[Condition, int], int] = {}
     for scenario in scenarios:
         for condition in scenario.conditions:
@@ -45,18 +45,18 @@ def _cost(scenarios: Iterable[Scenario]) -> tuple[str, str, str]:
 
 
 def show(
-    wanted: Annotated[
+    source: Annotated[
         str,
         typer.Argument(
             metavar="ID", help="Scenario or table of `kswarms list`, or my.toml.", autocompletion=complete_ids
         ),
     ],
 ) -> None:
-    """Print a scenario, or the scenarios of a table, as TOML; `kswarms run my.toml` plays an edited copy.
+    """Print a scenario, or the scenarios of a table, as TOML. Edit a copy and play it: `kswarms run my.toml`.
 
     Example: kswarms show fig-6.1c
     """
-    scenarios = select_scenarios([wanted])
+    scenarios = select_scenarios([source])
     typer.echo(
-        toml_of(scenarios) if len(scenarios) > 1 or wanted in TABLES else scenarios[0].to_toml(), nl=False
+        toml_of(scenarios) if len(scenarios) > 1 or source in TABLES else scenarios[0].to_toml(), nl=False
     )

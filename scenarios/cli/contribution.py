@@ -1,4 +1,4 @@
-"""``contribution``: what robots contribute to their swarm, by playing the game without them."""
+"""``contribution``: contributions of robots to their swarm, measured by games without them."""
 
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -14,7 +14,7 @@ from kswarms.scenarios.cli.progress import play_tracked
 
 
 def contribution(
-    wanted: Annotated[
+    source: Annotated[
         str,
         typer.Argument(
             metavar="ID", help="Scenario of `kswarms list`, or my.toml.", autocompletion=complete_scenario_ids
@@ -23,30 +23,30 @@ def contribution(
     condition: Annotated[
         str | None, typer.Option(metavar="NAME", help="Condition, required if the scenario has several.")
     ] = None,
-    n: Annotated[int, typer.Option(help="Robots in all, a multiple of the sum of the shares.")] = 26,
+    n: Annotated[int, typer.Option(help="Number of robots, a multiple of the sum of the shares.")] = 26,
     robots: Annotated[
         str | None, typer.Option(metavar="LIST", help="Robots, from 0, or swarms: 3,7 or S2. [default: all]")
     ] = None,
     seeds: Annotated[
-        int, typer.Option(min=1, max=MAX_SEEDS, help="Games; each is also played without each robot.")
+        int, typer.Option(min=1, max=MAX_SEEDS, help="Games; each is repeated without each robot.")
     ] = 20,
     first_seed: FirstSeed = 0,
     absent_from: Annotated[
         Literal["learning", "game"],
-        typer.Option(help="Absent from the learning and the game, or from the measured game only."),
+        typer.Option(help="Robot absent from learning and game, or from the measured game only."),
     ] = "learning",
     jobs: Jobs = CPUS,
     out: Annotated[
         Path, typer.Option(parser=parse_directory, metavar="DIR", help="Results directory.")
     ] = Path("results"),
 ) -> None:
-    """Measure contributions: play the same games without each robot and compare with its rewards.
+    """Measure contributions of robots: repeat games without each robot, and compare with its rewards.
 
     Example: kswarms contribution fig-6.4b --n 16 --robots S2 --seeds 5
     """
-    scenarios = select_scenarios([wanted])
+    scenarios = select_scenarios([source])
     if len(scenarios) > 1:
-        raise InputError("id", wanted, f"must be one scenario: {', '.join(each.id for each in scenarios)}")
+        raise InputError("id", source, f"must be one scenario: {', '.join(each.id for each in scenarios)}")
     scenario = scenarios[0]
     names = [each.name for each in scenario.conditions]
     if condition is None and len(names) > 1:
@@ -57,10 +57,10 @@ def contribution(
     from kswarms.analysis.measures.contribution import select_contributions, time_sud
     from kswarms.analysis.results.records import read_contributions
     from kswarms.analysis.tables.contribution import contribution_tables
-    from kswarms.scenarios.contribution.games import RECORD, contributions, robots_of
+    from kswarms.scenarios.contribution.games import RECORD, contributions, parse_robots
     from kswarms.scenarios.contribution.table import prepare_table, write_table
 
-    numbers = robots_of(game, robots)
+    numbers = parse_robots(game, robots)
     prepare_table(out)
     found = contributions(
         game,

@@ -6,11 +6,11 @@ from typing import Annotated
 import typer
 
 from kswarms.agents.common.errors import InputError
-from kswarms.scenarios.cli.options import RunDigest, Watched, resolve_source
+from kswarms.scenarios.cli.options import RunDigest, Source, resolve_source
 
 
 def explore(
-    what: Watched = None,
+    source: Source = None,
     run: RunDigest = "",
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 for any free port.")] = 8765,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Do not open a browser.")] = False,
@@ -24,6 +24,6 @@ def explore(
     from kswarms.scenarios.explore.server import serve
     from kswarms.scenarios.explore.session import Session
 
-    start = resolve_source(what, run)
+    start = resolve_source(source, run)
     Session(start).close()  # reports an error here, before a page is opened
     serve(start, port, not no_browser, lambda address: typer.echo(f"page: {address}  (Ctrl-C ends it)"))

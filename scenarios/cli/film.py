@@ -11,7 +11,7 @@ from PIL.Image import Image
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.film.files import check_film, write_film, write_sheet
 from kswarms.analysis.film.painter import ArenaPainter
-from kswarms.scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Watched, resolve_run
+from kswarms.scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Source, resolve_run
 from kswarms.scenarios.cli.progress import track
 from kswarms.scenarios.runs.run import Run
 
@@ -20,13 +20,14 @@ _MOST_FRAMES: Final = 100_000
 
 
 def film(
-    what: Watched = None,
+    source: Source = None,
     run: RunDigest = "",
     condition: ConditionName = None,
     n: Robots = None,
     seed: Seed = None,
     begin: Annotated[
-        float, typer.Option("--from", help="First instant (s of the measured game, negative in learning).")
+        float,
+        typer.Option("--from", help="First instant (s of the measured game, negative during learning)."),
     ] = 0.0,
     end: Annotated[float | None, typer.Option("--to", help="Last instant (s). [default: the end]")] = None,
     speed: Annotated[float, typer.Option(help="Seconds of the game per second of film, above 0.")] = 10.0,
@@ -38,14 +39,16 @@ def film(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Film (.mp4, .gif) or sheet (.png). [default: by the game]"),
+        typer.Option(
+            metavar="FILE", help="Film (.mp4, .gif) or sheet (.png). [default: named after the game]"
+        ),
     ] = None,
 ) -> None:
     """Film a game of a scenario, or a run of a results directory, from above.
 
     Example: kswarms film fig-6.1c --n 50 --to 120 --out fight.gif
     """
-    found = resolve_run(what, run, condition, n, seed)
+    found = resolve_run(source, run, condition, n, seed)
     length, first = found.game.duration, 0.0 - found.game.learning
     end = length if end is None else end
     _check("from", begin, first <= begin < length, f"must be at least {first}, below {length}")
@@ -56,7 +59,7 @@ def film(
         check_film(out)
         step = speed / fps
         fits = (end - begin) / step < _MOST_FRAMES
-        _check("speed", speed, fits, f"must be so high that the film has at most {_MOST_FRAMES:,} frames")
+        _check("speed", speed, fits, f"must be higher: a film has at most {_MOST_FRAMES:,} frames")
         instants = [begin + k * step for k in range(int((end - begin) / step + 1e-9) + 1)]
     else:
         _check("out", str(out), out.suffix == ".png", "must end with .png for a contact sheet")

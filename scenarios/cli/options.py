@@ -32,19 +32,22 @@ def complete_scenario_ids(incomplete: str) -> list[tuple[str, str]]:
 
 
 def parse_directory(text: str) -> Path:
-    """Return the path of a directory."""
+    """Return the path of a directory; refuse an empty text."""
     if not text:  # for example an unset shell variable; it would mean the current directory
         raise InputError("out", text, "must be the path of a directory")
     return Path(text)
 
 
-_WATCHED: Final = (
+_SOURCE_HELP: Final = (
     "Scenario or table of `kswarms list`, or my.toml; with --run, a results directory. "
     f"[default: {DEFAULT_SCENARIO}]"
 )
-Watched = Annotated[str | None, typer.Argument(metavar="ID|DIR", help=_WATCHED, autocompletion=complete_ids)]
+Source = Annotated[
+    str | None, typer.Argument(metavar="ID|DIR", help=_SOURCE_HELP, autocompletion=complete_ids)
+]
 RunDigest = Annotated[
-    str, typer.Option(metavar="DIGEST", help="Run of DIR to play again: column `run` of its tables.")
+    str,
+    typer.Option(metavar="DIGEST", help="Run of DIR to replay: column `run` of its tables."),
 ]
 ConditionName = Annotated[
     str | None,
@@ -52,31 +55,31 @@ ConditionName = Annotated[
 ]
 Robots = Annotated[
     int | None,
-    typer.Option("--n", help="Robots in all, a multiple of the sum of the shares. [default: near 20]"),
+    typer.Option("--n", help="Number of robots, a multiple of the sum of the shares. [default: near 20]"),
 ]
 Seed = Annotated[
     int | None, typer.Option("--seed", min=0, max=MAX_SEED, help="Seed of the game. [default: 0]")
 ]
 
 
-def resolve_source(what: str | None, run: str) -> str | Run:
+def resolve_source(source: str | None, run: str) -> str | Run:
     """Return the id or file of a scenario, or the run of a results directory if a digest is given."""
     if not run:
-        return what or DEFAULT_SCENARIO
-    if what is None:
-        raise InputError("run", run, "needs the results directory that has it")
+        return source or DEFAULT_SCENARIO
+    if source is None:
+        raise InputError("run", run, "needs a results directory, DIR")
     from kswarms.scenarios.watch.recorded_run import recorded_run
 
-    return recorded_run(Path(what), run)
+    return recorded_run(Path(source), run)
 
 
-def resolve_run(what: str | None, run: str, condition: str | None, n: int | None, seed: int | None) -> Run:
-    """Return a run of a results directory, by its digest, or a run of a scenario."""
-    start = resolve_source(what, run)
+def resolve_run(source: str | None, run: str, condition: str | None, n: int | None, seed: int | None) -> Run:
+    """Return a run of a results directory if a digest is given, or else a run of a scenario."""
+    start = resolve_source(source, run)
     if isinstance(start, Run):
         for field, value in (("condition", condition), ("n", n), ("seed", seed)):
             if value is not None:
-                raise InputError(field, value, "must not be given with a run, which has its own")
+                raise InputError(field, value, "must not be given with --run: the run has its own")
         return start
     found = select_scenarios([start])[0]
     name = found.conditions[0].name if condition is None else condition

@@ -13,7 +13,7 @@ from kswarms.scenarios.cli.printing import format_duration
 from kswarms.scenarios.runs.outcome import Failure, Outcome, Result
 from kswarms.scenarios.runs.run import Run
 
-Kind = Literal["bar", "json", "none"]
+ProgressStyle = Literal["bar", "json", "none"]
 
 _Step = TypeVar("_Step")
 
@@ -50,10 +50,10 @@ class Count:
         return passed * rest / self.worked if self.worked > 0 else float("inf")
 
 
-def show_progress(played: Iterable[Result], runs: Sequence[Run], kind: Kind) -> Iterator[Count]:
-    """Show the progress of a sweep on standard error; yield the count after each of the `played` runs."""
+def show_progress(played: Iterable[Result], runs: Sequence[Run], style: ProgressStyle) -> Iterator[Count]:
+    """Show the progress of a sweep on standard error; yield the count after each played run."""
     count = Count(runs)
-    show = {"bar": _bar, "json": _json_lines, "none": _nothing}[kind if runs else "none"]
+    show = {"bar": _bar, "json": _json_lines, "none": _no_progress}[style if runs else "none"]
     with show(count) as report:
         for run, result, _ in played:
             count.add(run, isinstance(result, Failure))
@@ -62,7 +62,7 @@ def show_progress(played: Iterable[Result], runs: Sequence[Run], kind: Kind) -> 
 
 
 @contextmanager
-def _nothing(_: Count) -> Iterator[Callable[[str], None]]:
+def _no_progress(_: Count) -> Iterator[Callable[[str], None]]:
     yield lambda _: None
 
 
@@ -102,20 +102,20 @@ def _bar(count: Count) -> Iterator[Callable[[str], None]]:
 
 
 def play_tracked(
-    runs: Sequence[Run], jobs: int, record: str, doing: str
+    runs: Sequence[Run], jobs: int, record: str, label: str
 ) -> Generator[tuple[Run, Outcome], None, None]:
     """Play runs, as `kswarms.scenarios.runs.sweep.play_all` does, and show a progress bar."""
     from kswarms.scenarios.runs.sweep import play_all
 
     with closing(play_all(runs, jobs, record)) as played:
-        yield from track(played, doing, len(runs))
+        yield from track(played, label, len(runs))
 
 
-def track(steps: Iterable[_Step], doing: str, total: int) -> Iterable[_Step]:
+def track(steps: Iterable[_Step], label: str, total: int) -> Iterable[_Step]:
     """Yield `total` steps and show a progress bar on standard error if that is a terminal."""
     from rich import progress
     from rich.console import Console
 
     console = Console(stderr=True)
     hidden = not console.is_terminal
-    return progress.track(steps, doing, total=total, console=console, transient=True, disable=hidden)
+    return progress.track(steps, label, total=total, console=console, transient=True, disable=hidden)

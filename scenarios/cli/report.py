@@ -24,10 +24,11 @@ def report(
         typer.Option(metavar="DIR", help="Also write figures (PNG, SVG) and tables (CSV, Markdown, HTML)."),
     ] = None,
     findings: Annotated[
-        Path | None, typer.Option(metavar="TOML", help="Your findings, judged with those of the thesis.")
+        Path | None,
+        typer.Option(metavar="TOML", help="User-defined findings to judge besides those of the thesis."),
     ] = None,
 ) -> None:
-    """Write figures, tables and verdicts of all results into one HTML file that needs no network.
+    """Write figures, tables and verdicts of all results into one HTML file, readable offline.
 
     Example: kswarms report results --out report.html
     """
@@ -40,7 +41,7 @@ def report(
     own = read_findings(findings) if findings is not None else ()
     for finding in own:
         if finding.id in {each.id for each in FINDINGS}:
-            raise InputError("findings.id", finding.id, "must not be that of a finding of the thesis")
+            raise InputError("findings.id", finding.id, "must differ from those of the thesis")
     plan = {
         name: PlannedScenario(each.title, tuple(c.name for c in each.conditions), each.densities, each.seeds)
         for name, each in CATALOGUE.items()

@@ -14,7 +14,7 @@ from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selection import select_scenarios, with_densities_and_seeds
 from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, complete_ids, parse_directory
 from kswarms.scenarios.cli.printing import print_table
-from kswarms.scenarios.cli.progress import Kind, show_progress
+from kswarms.scenarios.cli.progress import ProgressStyle, show_progress
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.description.text import parse_integers, split_words
 
@@ -30,13 +30,13 @@ def run(
         ),
     ] = None,
     everything: Annotated[
-        bool, typer.Option("--all", help="All scenarios, each with the --densities that suit it.")
+        bool, typer.Option("--all", help="Play all scenarios, each at the --densities that it allows.")
     ] = False,
     densities: Annotated[
         str | None,
         typer.Option(
             metavar="N,N,...",
-            help="Robots in all, multiples of the sum of the shares. [default: the scenario's]",
+            help="Numbers of robots, multiples of the sum of the shares. [default: the scenario's]",
         ),
     ] = None,
     seeds: Annotated[
@@ -60,12 +60,12 @@ def run(
         str, typer.Option(metavar="NAME,...", help=f"Additional tables: {', '.join(RECORDED_TABLES)}.")
     ] = "",
     no_figures: Annotated[bool, typer.Option("--no-figures", help="Do not draw figures.")] = False,
-    progress: Annotated[Kind, typer.Option(help="How progress is shown.")] = "bar",
+    progress: Annotated[ProgressStyle, typer.Option(help="How progress is shown.")] = "bar",
     quiet: Annotated[bool, typer.Option("--quiet", help="Print errors only.")] = False,
 ) -> int:
     """Play scenarios, write tables of their results and draw a figure of each.
 
-    The same command resumes an interrupted study: runs that DIR has are not played again.
+    The same command resumes an interrupted study: it plays only the runs that DIR lacks.
 
     Example: kswarms run fig-6.1a fig-6.1c --densities 6,30,50 --seeds 5
     """
@@ -83,7 +83,7 @@ def run(
         if name not in RECORDED_TABLES:
             raise InputError("record", name, f"must be among {', '.join(RECORDED_TABLES)}")
     if left_out:
-        _warn(f"none of the densities suits {', '.join(left_out)}: left out")
+        _warn(f"left out, since no density suits them: {', '.join(left_out)}")
 
     command = shlex.join(context.obj)
     tables, failed = _play(
@@ -103,7 +103,7 @@ def run(
                 _print_table(table_id, out)
         directory = shlex.quote(str(out))
         if failed:
-            typer.echo(f"next:   kswarms status {directory}  (what failed, and how to see it fail again)")
+            typer.echo(f"next:   kswarms status {directory}  (failed runs, and how to replay them)")
         else:
             typer.echo(f"next:   kswarms report {directory}  (all results in one HTML file)")
     return 1 if failed else 0
@@ -116,7 +116,7 @@ def _play(
     scheduler: str | None,
     records: Sequence[str],
     out: Path,
-    progress: Kind,
+    progress: ProgressStyle,
     command: str,
 ) -> tuple[list[Path], int]:
     """Play the missing runs of a study; return the tables written and the number of failed runs."""
@@ -132,13 +132,13 @@ def _play(
         study = stack.enter_context(Study(out, command))
         runs = study.plan(scenarios, first_seed, records)
         for code in study.other_code:
-            _warn(f"{out} keeps runs of other code, {code}; name another --out to play them again")
+            _warn(f"{out} has runs of other code, {code}; use another --out to play them again")
         try:
             with closing(study.play(runs, workers, records, executor)) as played:
                 for count in show_progress(played, runs, progress):
                     failed = count.failed
         except KeyboardInterrupt:
-            _warn(f"{out} keeps the finished runs; the same command resumes")
+            _warn(f"{out} has the finished runs; repeat the command to resume")
             raise
     if failed:
         _warn(f"{failed} of {len(runs)} runs failed; see `kswarms status {shlex.quote(str(out))}`")

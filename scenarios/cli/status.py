@@ -1,4 +1,4 @@
-"""``status`` and ``replay``: the state of a results directory, and one of its runs played again."""
+"""``status`` and ``replay``: the state of a results directory, and the replay of one of its runs."""
 
 import shlex
 from pathlib import Path
@@ -15,22 +15,22 @@ Directory = Annotated[Path, typer.Argument(metavar="DIR", help="Results director
 
 
 def status(directory: Directory) -> None:
-    """Show finished, failed and missing runs, why runs failed, and the CPU time.
+    """Show the finished, failed and missing runs, their CPU time and the errors.
 
     Example: kswarms status results
     """
     with Ledger(directory / LEDGER_FILE) as ledger:
-        heads = ("scenario", "done", "failed", "missing", "CPU time")
+        headings = ("scenario", "done", "failed", "missing", "CPU time")
         rows = [(name, *_cells(counts)) for name, counts in ledger.points_by_scenario().items()]
         rows.append(("runs, each once", *_cells(ledger.runs_by_status())))
-        print_columns([heads, *rows], left=(0,))
+        print_columns([headings, *rows], left=(0,))
         typer.echo()
         sessions = ledger.sessions()
         typer.echo(f"sessions: {len(sessions)}, the first of {sessions[0]['started'] if sessions else '–'}")
         for code, runs in ledger.runs_by_code().items():
             typer.echo(f"played by: kswarms {code}, {runs} runs")
-        if user := lock_holder(directory):
-            typer.echo(f"in use by: {user}")
+        if holder := lock_holder(directory):
+            typer.echo(f"in use by: {holder}")
         for (run, scenario, condition, n, seed), error, trace in ledger.failed_runs():
             label = f"{scenario} {condition}".strip()
             typer.echo(f"\nfailed: {label}, n={n}, seed={seed}: {error}")
@@ -41,17 +41,17 @@ def status(directory: Directory) -> None:
 
 def replay(
     directory: Directory,
-    wanted: Annotated[str, typer.Argument(metavar="RUN", help="Digest of a run: column `run` of a table.")],
+    run_digest: Annotated[str, typer.Argument(metavar="RUN", help="Digest: column `run` of a table.")],
 ) -> int:
-    """Play one run again, print its results and compare them with DIR. Nothing is written.
+    """Play one run again, print its results and compare them with DIR. It writes nothing.
 
     Example: kswarms replay results 0c2b1f7a9d3e4f56
     """
     from kswarms.scenarios.runs.play import play
 
     with Ledger(directory / LEDGER_FILE) as ledger:
-        run = ledger.run(wanted)
-        kept = ledger.outcome(wanted)
+        run = ledger.run(run_digest)
+        kept = ledger.outcome(run_digest)
     typer.echo(str(run))
     outcome = play(run)
     for row in (*outcome.swarms, *outcome.policies):

@@ -1,1 +1,1 @@
-"""Contributions: the same games played without single robots."""
+"""Contributions of robots, measured by games without them."""

@@ -1,7 +1,7 @@
 """Contribution of a robot: the same game played with it and without it (docs/contribution.md).
 
-Both games have the same seed, so they differ only through the absent robot. The measured games are compared,
-whether the robot is absent from the learning too or not.
+Both games have the same seed, so they differ only through the absent robot. Only the measured games are
+compared, even if the robot is absent from the learning phase too.
 """
 
 import math
@@ -33,7 +33,7 @@ RECORD: Final = "conflicts,robots"
 """Records that the comparison needs."""
 
 
-def robots_of(game: Game, text: str | None) -> tuple[int, ...]:
+def parse_robots(game: Game, text: str | None) -> tuple[int, ...]:
     """Parse a list of robots and swarms of a game; return the numbers of the robots, ascending.
 
     Parameters
@@ -50,7 +50,7 @@ def robots_of(game: Game, text: str | None) -> tuple[int, ...]:
     --------
     >>> from kswarms.model.description.game import Swarm
     >>> trio = Game(swarms=[Swarm(policy="avoid", size=size) for size in (2, 3, 4)])
-    >>> robots_of(trio, "S2,0")
+    >>> parse_robots(trio, "S2,0")
     (0, 2, 3, 4)
     """
     members, first = {}, 0
@@ -77,12 +77,12 @@ def contributions(
     play: Play | None = None,
     time_sud: TimeSud | None = None,
 ) -> list[dict[str, Any]]:
-    """Play a game with all robots and without each of some robots, and compare.
+    """Play a game with all robots, and without each of `robots` in turn, and compare.
 
     Parameters
     ----------
     robots : sequence of int
-        The robots whose contributions are measured, one by one.
+        The robots whose contributions are measured.
     absent_from : {'learning', 'game'}
         Absent from the learning and the game, or from the measured game only.
     label : tuple of str
@@ -106,7 +106,7 @@ def contributions(
         If a game fails.
     """
     if game.absent:
-        raise InputError("absent", game.absent, "must be empty: robots are taken from a game of all")
+        raise InputError("absent", game.absent, "must be empty: contributions need a game of all robots")
     games = [game, *(game.replace(absent=(robot,), absent_from=absent_from) for robot in robots)]
     runs = [Run(digest(each, seed), each, seed, (label,)) for seed in seeds for each in games]
     measured: dict[tuple[int, tuple[int, ...]], _Measured] = {}
@@ -126,7 +126,7 @@ def contributions(
 class _Measured:
     """Measures of a run."""
 
-    run: str  # digest
+    run: str  # its digest
     swarms: list[dict[str, Any]]  # results of each swarm
     time_sud: Sequence[float]  # of each swarm (s)
     times: dict[int, tuple[float, float]]  # T(a) and T(p) of each robot in the measured game (s)

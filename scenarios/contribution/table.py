@@ -32,7 +32,7 @@ def prepare_table(directory: Path) -> None:
     except (OSError, pa.ArrowException):
         valid = False
     if not valid:
-        raise InputError("out", str(directory), f"holds a {FILE} that is no table of kswarms")
+        raise InputError("out", str(directory), f"has a {FILE} that is no table of kswarms")
     remove_temporary_files(directory)
 
 

@@ -1,12 +1,15 @@
 """Values of the page's controls, from which a game is built."""
 
+from collections.abc import Mapping
 from typing import Any, Literal, NamedTuple, Self
 
 from kswarms.agents.body import BODIES
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.learning.rewards import REWARDS
 from kswarms.agents.learning.selection_rules import RULES
 from kswarms.agents.policies.spec import parse_policies
+from kswarms.agents.user_code.syntax import Call
 from kswarms.model.description.game import Game
 from kswarms.model.description.parameters import parse_parameters, text_of
 from kswarms.scenarios.description.condition import Condition, SwarmRule
@@ -39,7 +42,7 @@ class Form(NamedTuple):
         return form._replace(absent=game.absent, absent_from=game.absent_from)
 
     def replace(self, **changes: Any) -> Self:
-        """Return the form with some values changed, of this class or of `fields`."""
+        """Return the form with some values changed: attributes of the form, or entries of `fields`."""
         own = {name: value for name, value in changes.items() if name in self._fields}
         fields = {name: value for name, value in changes.items() if name not in own}
         return self._replace(**{"fields": self.fields | fields, **own})
@@ -58,38 +61,36 @@ class Form(NamedTuple):
 
 
 def with_parameter(text: str, name: str, value: float) -> str:
-    """Return the shortest text of parameters in which one parameter has another value."""
+    """Return the text of parameters with one value changed, without default values."""
     return text_of(parse_parameters(text).replace(**{name: value}))
 
 
 class Learning(NamedTuple):
-    """How a learner learns: the names of its reward and its selection rule, Δ and γ."""
+    """Reward and selection rule of a learner, by name, with their arguments Δ and γ."""
 
     reward: str
     rule: str
-    delta: float | None  # None if the reward has none, or one for each opponent
-    gamma: float | None  # None if the rule has none
+    delta: float | None  # None if the reward has no Δ, or a Δ for each opponent
+    gamma: float | None  # None if the rule has no γ
 
 
 def learning_of(policies: list[str]) -> Learning | None:
-    """Return how the first learner among some policies learns; None if no learner can be parsed."""
+    """Return reward and rule of the first learner among policies; None if no learner can be parsed."""
     for policy in policies:
         try:
             for spec in parse_policies(policy):
                 reward, rule = spec.learner_part("reward"), spec.learner_part("rule")
                 if reward is not None and rule is not None:
-                    delta, gamma = (
-                        _number(kinds[call.name].model_fields, call.arguments, name)
-                        if call.name in kinds
-                        else None
-                        for kinds, call, name in ((REWARDS, reward, "delta"), (RULES, rule, "gamma"))
-                    )
+                    delta = _argument(reward, REWARDS, "delta")
+                    gamma = _argument(rule, RULES, "gamma")
                     return Learning(reward.name, rule.name, delta, gamma)
         except InputError:
             continue
     return None
 
 
-def _number(fields: Any, arguments: dict[str, Any], name: str) -> float | None:
-    value = arguments.get(name, fields[name].default) if name in fields else None
+def _argument(call: Call, kinds: Mapping[str, type[FrozenModel]], name: str) -> float | None:
+    """Return a number that a call has as argument, or its default; None if it has no such number."""
+    fields = kinds[call.name].model_fields if call.name in kinds else {}
+    value = call.arguments.get(name, fields[name].default) if name in fields else None
     return float(value) if isinstance(value, int | float) else None

@@ -20,7 +20,7 @@ from kswarms.scenarios.explore.session import Act, Session
 from kswarms.scenarios.explore.views import Json, frame_of, scene_of
 from kswarms.scenarios.runs.run import Run
 
-FASTEST: Final = 1 / 25
+FRAME_INTERVAL: Final = 1 / 25
 """Minimum time between two frames (s)."""
 _PANELS_EVERY: Final = 0.5
 """Time between two updates of the panels while the game runs (s)."""
@@ -101,7 +101,7 @@ def Layout(children: list[Any]) -> None:
 def _run(session: Session, signals: Signals) -> Callable[[], None]:
     """Start the thread that plays the game; return a function that ends it."""
     stop = threading.Event()
-    thread = threading.Thread(target=play, args=(session, signals, stop), daemon=True)
+    thread = threading.Thread(target=play_session, args=(session, signals, stop), daemon=True)
     thread.start()
 
     def end() -> None:
@@ -114,9 +114,9 @@ def _run(session: Session, signals: Signals) -> Callable[[], None]:
     return end
 
 
-def play(session: Session, signals: Signals, stop: threading.Event) -> None:
-    """Play a game and update the page until `stop` is set."""
-    last = shown = time.monotonic()
+def play_session(session: Session, signals: Signals, stop: threading.Event) -> None:
+    """Play the game and update the page until `stop` is set."""
+    last = panels_sent = time.monotonic()
     while not stop.is_set():
         if not session.active:
             signals.wake.wait()
@@ -124,7 +124,7 @@ def play(session: Session, signals: Signals, stop: threading.Event) -> None:
             last = time.monotonic()
             continue
         now = time.monotonic()
-        # Limited, so that the game does not jump after a pause of the machine.
+        # The limit prevents a jump of the game after the machine was suspended.
         moved = session.tick(min(now - last, 0.25))
         last = now
         if moved:
@@ -132,11 +132,11 @@ def play(session: Session, signals: Signals, stop: threading.Event) -> None:
             signals.send(signals.frame)
             if not session.active:
                 signals.send_all()
-            elif now - shown >= _PANELS_EVERY:
-                shown = now
+            elif now - panels_sent >= _PANELS_EVERY:
+                panels_sent = now
                 signals.send(signals.panels)
             signals.drawn.wait(_DRAW_TIMEOUT)
-        time.sleep(max(0.0, FASTEST - (time.monotonic() - now)))
+        time.sleep(max(0.0, FRAME_INTERVAL - (time.monotonic() - now)))
 
 
 @solara.component

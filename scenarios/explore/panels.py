@@ -12,6 +12,10 @@ from kswarms.scenarios.watch.conflicts import HEADINGS, Arm, WatchedConflict, co
 from kswarms.scenarios.watch.robot_view import RobotView
 
 _CONFLICTS_SHOWN: Final = 60
+_CONFLICT_HEADINGS: Final = (
+    "t (s)", "who →\nmet", "where\n(m)", "known:\nQ (N)", "chose\nR (s)",
+    "Q\nafter", "T(a)\n(s)", "T(p)\n(s)", "n′", "saw",
+)  # fmt: skip
 
 
 @solara.component_vue("vue/table.vue")
@@ -112,13 +116,7 @@ def _Conflicts(session: Session, signal: solara.Reactive[int], act: Act) -> None
     if not conflicts:
         solara.Text("No conflict has ended yet.")
         return
-    _Table(header=_HEADER, rows=[_conflict_row(each, player.begin) for each in conflicts])
-
-
-_HEADER: Final = (
-    "t (s)", "who →\nmet", "where\n(m)", "known:\nQ (N)", "chose\nR (s)",
-    "Q\nafter", "T(a)\n(s)", "T(p)\n(s)", "n′", "saw",
-)  # fmt: skip
+    _Table(header=_CONFLICT_HEADINGS, rows=[_conflict_row(each, player.begin) for each in conflicts])
 
 
 def _conflict_row(conflict: WatchedConflict, begin: float) -> list[str]:

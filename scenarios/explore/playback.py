@@ -10,7 +10,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.watch.player import Player
 
 SPEEDS: Final = (1, 2, 5, 10, 20, 50, 100)
-"""Seconds of the game per second."""
+"""Playback speeds: seconds of the game per second."""
 _BURST: Final = 0.2
 """Maximum time of playing at full speed before the page is updated (s)."""
 _STRIDE: Final = 5.0
@@ -24,11 +24,11 @@ class Playback:
         self.player = player
         self.playing = False
         self.speed = 10  # one of `SPEEDS`
-        self.goal: float | None = None  # instant to play to at full speed (s, as `Player.time`)
+        self.goal: float | None = None  # play at full speed up to this instant (s, as `Player.time`)
         self.error = ""  # the latest error in one line, empty if there is none
         self._failed = False
-        self._transient = False  # whether the error disappears when the game moves elsewhere
-        self._owed = 0.0  # time of the game that is due, less than a period (s)
+        self._transient = False  # whether `reset` and `go_to` clear the error
+        self._owed = 0.0  # game time not yet played, less than a period (s)
 
     def restart(self, player: Player) -> None:
         """Replace the game by another one, which starts at its beginning."""
@@ -46,7 +46,7 @@ class Playback:
 
     @contextmanager
     def report_errors(self, transient: bool = False) -> Iterator[None]:
-        """Store errors in `error`; a transient error disappears when the game moves elsewhere."""
+        """Store errors in `error`; `reset` and `go_to` clear a transient error."""
         try:
             yield
         except InputError as error:
@@ -75,7 +75,7 @@ class Playback:
             self.player.advance(0.0)
 
     def reset(self) -> None:
-        """Rewind to the beginning, learning included."""
+        """Rewind to the beginning of the learning phase."""
         self.goal = None
         with self.report_errors(transient=True):
             self.player.seek(-self.player.begin)

@@ -19,15 +19,15 @@ from kswarms.scenarios.runs.run import Run
 from kswarms.scenarios.watch.player import Player
 
 Act = Callable[[Callable[[], None]], None]
-"""Performs an action on a session and updates the page."""
+"""Performs an action on the session, then updates the page."""
 
 
 class Session(Playback):
     """The controls of a page and its game.
 
-    It starts with a scenario, as `select_scenarios` takes it, or a run: the `source` of the form, with its
-    `title`. `conditions` are those of the scenario, by name. `selected` is the number of the selected robot,
-    which may be absent. A game that fails at its start raises a `RunError`.
+    It starts with a scenario (an id or file, as for `select_scenarios`) or with a run. `source` and `title`
+    describe either. `conditions` are the conditions of the scenario, by name. `selected` is the number of the
+    selected robot, which may be absent. A game that fails at its start raises a `RunError`.
     """
 
     def __init__(self, start: str | Run) -> None:
@@ -78,7 +78,7 @@ class Session(Playback):
             self.change(swarms=tuple(swarm | {"policy": policy} for swarm, policy in pairs))
 
     def change_swarm(self, k: int, **changes: Any) -> None:
-        """Change fields of a swarm (from 0); a new share changes N to the nearest suitable number."""
+        """Change fields of a swarm (from 0). A new share rounds N to the nearest allowed number."""
         form = self.form.replace_swarm(k, **changes)
         self._restart(_suit_n(form.replace(multiple_of=None)) if "share" in changes else form)
 

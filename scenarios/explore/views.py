@@ -59,9 +59,9 @@ _SHORTEST_AXIS: Final = 10.0
 def charts_of(history: Sequence[Sample]) -> dict[str, Json]:
     """Return the options for ECharts of each chart, by heading.
 
-    Once the measured game has begun, charts omit the learning phase, except the chart of what is learned.
+    Once the measured game has begun, charts omit the learning phase, except the chart of learned actions.
     """
-    everything = history
+    full_history = history
     if history[-1].time > 0:
         history = [sample for sample in history if sample.time >= 0]
     times = [sample.time for sample in history]
@@ -81,8 +81,10 @@ def charts_of(history: Sequence[Sample]) -> dict[str, Json]:
         "Share of time in conflict": _chart(inter + intra, began, now, most=1.0),
     }
     learned = []
-    for number, (own, other) in enumerate(everything[0].fights):
-        known = [sample for sample in everything if (own, other) in sample.fights]  # until all robots leave
+    for number, (own, other) in enumerate(full_history[0].fights):
+        known = [
+            sample for sample in full_history if (own, other) in sample.fights
+        ]  # a pair ends when its robots leave
         learned.append(
             _line(
                 f"S{own} against S{other}" if own != other else f"S{own} within",
@@ -94,7 +96,7 @@ def charts_of(history: Sequence[Sample]) -> dict[str, Json]:
         )
     if learned:
         heading = "Share of learners whose best action is to fight"
-        charts[heading] = _chart(learned, everything[0].time, now, most=1.0)
+        charts[heading] = _chart(learned, full_history[0].time, now, most=1.0)
     return charts
 
 

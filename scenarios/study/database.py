@@ -59,9 +59,7 @@ def _prepare(db: sqlite3.Connection, create: bool) -> None:
     ((form,),) = db.execute("PRAGMA user_version")
     empty = not db.execute("SELECT 1 FROM sqlite_master").fetchone()
     if not (empty and create) and (application, form) != (_APPLICATION, _FORMAT):
-        raise sqlite3.DatabaseError(
-            f"format {form}, not {_FORMAT}" if application else "other file"
-        )
+        raise sqlite3.DatabaseError(f"format {form}, not {_FORMAT}" if application else "of another program")
     if create:
         db.execute("PRAGMA journal_mode = WAL")
         db.execute("PRAGMA synchronous = NORMAL")

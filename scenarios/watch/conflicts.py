@@ -1,4 +1,4 @@
-"""The conflicts of a run, with what each robot knew when its conflict began.
+"""The conflicts of a run, with the knowledge of each robot at the start of its conflict.
 
 A game with a seed is deterministic, so a run is played again instead of being recorded.
 """
@@ -16,23 +16,23 @@ from kswarms.scenarios.runs.run import Run
 
 
 class Arm(NamedTuple):
-    """What a robot knows about an action against a swarm."""
+    """Knowledge of a robot about an action against a swarm."""
 
     action: str
     n: float  # N(a), discounted if the rule discounts
     q: float  # Q(a) (Eq. 4.15), NaN if the action was never tried
-    bound: float  # of Q(a) (Eq. 4.16), NaN if the rule is not UCB or an action was never tried
+    bound: float  # upper bound of Q(a) (Eq. 4.16), NaN if the rule is not UCB or an action was never tried
 
 
 class WatchedConflict(NamedTuple):
-    """A conflict and what its robot knew when it began.
+    """A conflict, with the knowledge of its robot at its start.
 
     Attributes
     ----------
     row : dict of str to object
         The columns of ``conflicts.parquet`` without `run` (`kswarms.agents.common.columns`).
     known : tuple of Arm
-        For each action against that swarm; empty if the robot does not learn about the swarm.
+        Knowledge about each action against the opponent's swarm; empty if the robot does not learn about it.
     """
 
     row: dict[str, Any]
@@ -40,7 +40,7 @@ class WatchedConflict(NamedTuple):
 
 
 def arms_of(learner: Learner, bandit: Bandit) -> tuple[Arm, ...]:
-    """Return what a bandit of a learner knows about each action."""
+    """Return the knowledge of a bandit about each action."""
     rule = learner.rule
     bounds = [math.nan] * len(bandit.count)
     if isinstance(rule, UCB) and min(bandit.count) >= FORGOTTEN:
@@ -52,7 +52,7 @@ def arms_of(learner: Learner, bandit: Bandit) -> tuple[Arm, ...]:
 
 
 class ConflictReader:
-    """Reads the recorded conflicts of a game and adds what each robot knew.
+    """Reads the recorded conflicts of a game and adds the knowledge of the robots.
 
     A robot reports its last conflict, learns from it, and only then chooses again. So its knowledge follows
     from the rewards recorded before.
@@ -74,7 +74,7 @@ class ConflictReader:
         names = list(self._table)
         columns = [self._table[name].copy() for name in names]
         for column in self._table.values():
-            column.clear()  # saves memory in long games
+            column.clear()  # limits memory in long games
         for values in zip(*columns, strict=True):
             yield self._add_knowledge(dict(zip(names, values, strict=True)))
 
@@ -111,7 +111,7 @@ def conflict_cells(conflict: WatchedConflict, begin: float) -> list[str]:
         f"{row['start'] - begin:.1f}",
         f"{row['robot']} of S{row['swarm']}",
         f"{row['opponent']} of S{row['opponent_swarm']}",
-        f"{x:z.2f}, {y:z.2f}",  # z: no −0.00
+        f"{x:z.2f}, {y:z.2f}",  # z avoids −0.00
         ", ".join(f"{arm.action} {format_number(arm.q)} ({arm.n:.4g})" for arm in conflict.known) or "–",
         row["action"],
         f"{row['t_a']:.1f}",

@@ -43,7 +43,7 @@ class Snapshot(NamedTuple):
 
 
 class Sample(NamedTuple):
-    """Results so far: a point of each curve."""
+    """Intermediate results: a point of each curve of the charts."""
 
     time: float  # as `Player.time`
     swarms: list[dict[str, Any]]  # as `GameModel.results` returns them
@@ -129,8 +129,7 @@ class Player:
     def seek(self, time: float) -> None:
         """Go to an instant (s, as `time`), forwards or backwards; stop at the end of the game.
 
-        If the game cannot be rewound because files that it needs have changed, raise `InputError` and keep
-        the state.
+        If files that the game loads have changed, raise `InputError` instead of rewinding; keep the state.
         """
         with self._lock:
             target = round((time + self.begin) / self.game.parameters.period)
@@ -143,11 +142,11 @@ class Player:
     def to_next_conflict(self, robot: int) -> None:
         """Play until a robot begins a conflict, leaves, or the game ends."""
         with self._lock:
-            begun = self._begun(robot)
+            begun = self._count_conflicts(robot)
             while begun is not None and not self.ended:
                 self._play_to(self._steps + 1)
-                # The count restarts, and may drop, at the start of the measured game.
-                before, begun = begun, self._begun(robot)
+                # The count restarts at the start of the measured game, so it may decrease.
+                before, begun = begun, self._count_conflicts(robot)
                 if begun is not None and begun > before:
                     break
 
@@ -157,7 +156,8 @@ class Player:
             found = (each for each in reversed(self.conflicts) if robot in (None, each.row["robot"]))
             return list(islice(found, most))
 
-    def _begun(self, robot: int) -> int | None:
+    def _count_conflicts(self, robot: int) -> int | None:
+        """Return the number of conflicts that a robot has begun; None if it is absent."""
         row = row_of(self.model, robot)
         return None if row is None else sum(self.model.robots[row].conflicts)
 

@@ -86,7 +86,7 @@ def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
     [
         ("run", "id='': must be one or more of `kswarms list`, or none with --all"),
         ("run fig-6.1a --all", "id='fig-6.1a': must be one or more of"),
-        ("run fig-6.1a fgi-7.12", "id='fgi-7.12': must be in the catalogue; did you mean fig"),
+        ("run fig-6.1a fgi-7.12", "id='fgi-7.12': must be a scenario or table; did you mean fig"),
         ("run fig-6.1a --seeds 0", "seeds=0: must be greater than or equal to 1"),
         ("run fig-6.1a --seeds 1.5", "seeds='1.5': must be a valid integer"),
         ("run fig-6.1a --record robots,", "record='': must be among conflicts, robots, trajectory"),
@@ -222,7 +222,7 @@ def test_all_plays_the_scenarios_that_the_densities_suit(
     assert printed.out == "next:   kswarms report results  (all results in one HTML file)\n"
     assert printed.err == ""
     assert invoke(["run", "--all", "--densities", "6", "--seeds", "1", "--no-figures"]) == 0
-    left_out = "kswarms: none of the densities suits fig-7.12, fig-7.13a, fig-7.13b: left out\n"
+    left_out = "kswarms: left out, since no density suits them: fig-7.12, fig-7.13a, fig-7.13b\n"
     assert capsys.readouterr().err == left_out
 
 

@@ -38,7 +38,7 @@ swarms = [{ policy = "attack" }, { policy = "attack" }]
         ("calibrate --generations 99999999", "generations=99999999: must be less than or equal to 10000"),
         (
             "film fig-6.1a --n 6 --out a.gif --speed 1e-300",
-            "speed=1e-300: must be so high that the film has at most",
+            "speed=1e-300: must be higher: a film has at most",
         ),
         ("conflicts fig-6.1a --n 6 --from nan", "from=nan: must be a number of seconds"),
         ("conflicts fig-6.1a --n 6 --to nan", "to=nan: must be a number of seconds, at least -inf"),

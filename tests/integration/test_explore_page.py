@@ -147,7 +147,7 @@ def test_a_running_game_is_shown_frame_by_frame_and_the_panels_less_often(
 
     signals.controls.subscribe(end)  # updated when the game has ended
     threading.Timer(0.05, begin).start()
-    page.play(session, signals, over)
+    page.play_session(session, signals, over)
     assert (seen, seen[-1]) == (sorted(seen), 8.0)
     assert 0 < len(panels) < len(seen)
 

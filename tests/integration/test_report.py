@@ -141,7 +141,7 @@ def test_rows_of_a_batch_run_can_be_drawn_and_reported(tmp_path: Path) -> None:
         ("good --out nowhere/a.html", "out='nowhere/a.html': must be a file in a directory that exists"),
         ("good --out empty", "out='empty': must be a writable file"),
         ("good --findings none.toml", "findings='none.toml': must be a readable TOML file"),
-        ("good --findings taken.toml", "findings.id='6.1a-alike': must not be that of a finding"),
+        ("good --findings taken.toml", "findings.id='6.1a-alike': must differ from those of the thesis"),
         ("good --files good/runs.parquet", "files='good/runs.parquet': must be a folder"),
     ],
 )

@@ -79,7 +79,11 @@ def test_another_kind_of_ledger_is_refused_and_unchanged() -> None:
     with sqlite3.connect(Path("later", LEDGER_FILE)) as db:
         db.executescript("PRAGMA application_id = 1802729325; PRAGMA user_version = 2")
     db.close()
-    for name, reason in (("text", "file is not"), ("other", "other file"), ("later", "format 2, not 1")):
+    for name, reason in (
+        ("text", "file is not"),
+        ("other", "of another program"),
+        ("later", "format 2, not 1"),
+    ):
         before = Path(name, LEDGER_FILE).read_bytes()
         with pytest.raises(InputError, match=rf"='{name}/{LEDGER_FILE}': must be a ledger of.*\({reason}"):
             Study(Path(name)).__enter__()
@@ -139,6 +143,6 @@ def test_runs_of_other_code_are_kept_and_reported(
         assert invoke([*RUN, "--seeds", "1"]) == 0
         assert capsys.readouterr().err == ""
     assert invoke([*RUN, "--seeds", "1"]) == 0
-    assert capsys.readouterr().err.startswith("kswarms: results keeps runs of other code, 0.1.0 before; ")
+    assert capsys.readouterr().err.startswith("kswarms: results has runs of other code, 0.1.0 before; ")
     assert invoke(["status", "results"]) == 0
     assert "played by: kswarms 0.1.0 before, 4 runs" in capsys.readouterr().out

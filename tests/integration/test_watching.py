@@ -58,7 +58,7 @@ def test_a_recorded_run_is_filmed_and_its_conflicts_are_listed(capsys: pytest.Ca
     name = str(pq.read_table("results/runs.parquet")["run"][0])
     capsys.readouterr()
     assert _film(f"--run {name} results --seed 4") == 2
-    assert "seed=4: must not be given with a run" in capsys.readouterr().err
+    assert "seed=4: must not be given with --run" in capsys.readouterr().err
     assert _film(f"--run {name} results --to 1 --size 64 --out a.gif") == 0
     assert invoke(["conflicts", "--run", name, "results", "--robot", "2", "--to", "300"]) == 0
     header, *lines = capsys.readouterr().out.splitlines()[1:]
@@ -146,7 +146,7 @@ def test_a_compared_run_of_an_unknown_scenario_is_refused() -> None:
         whole = {field.name: None for field in SCHEMA} | row | {"scenario": scenario, "condition": condition}
         whole["absent_from"] = "game"
         pq.write_table(pa.Table.from_pylist([whole], schema=SCHEMA), "contribution.parquet")
-        with pytest.raises(InputError, match=f"run='{name}': is of another version of kswarms, or its "):
+        with pytest.raises(InputError, match=f"run='{name}': must be a run of this version of kswarms"):
             recorded_run(Path(), str(name))
         with pytest.raises(InputError, match="must be a directory with a ledger"):
             recorded_run(Path(), "4567")
@@ -165,7 +165,7 @@ def test_a_compared_run_of_an_unknown_scenario_is_refused() -> None:
         ("film fig-6.1c --out a.avi", "out='a.avi': must end with .mp4 or .gif"),
         ("film fig-6.1c --sheet 2 --out a.gif", "out='a.gif': must end with .png"),
         ("film fig-6.1c --out nowhere/a.gif", "out='nowhere/a.gif': must be in a directory that exists"),
-        ("film --run 0123", "run='0123': needs the results directory that has it"),
+        ("film --run 0123", "run='0123': needs a results directory, DIR"),
         ("film --run 0123 nowhere", "results='nowhere': must be a directory"),
         ("conflicts fig-6.1c --n 6 --robot 6", "robot=6: must be in 0 to 5"),
         ("explore fig-9", "id='fig-9': must be a scenario"),

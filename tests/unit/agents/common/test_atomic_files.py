@@ -35,7 +35,7 @@ def test_a_failed_write_changes_nothing(tmp_path: Path) -> None:
 
 
 def test_only_temporary_files_of_killed_processes_are_removed(tmp_path: Path) -> None:
-    left = [f".unfinished-{process}-film.gif" for process in (99_999_999, 10**30)]    # no process IDs
+    left = [f".unfinished-{process}-film.gif" for process in (99_999_999, 10**30)]  # no process IDs
     living = [f".unfinished-{process}-film.gif" for process in (1, os.getpid())]
     of_others = [*living, ".unfinished-tables-1", "1-film.gif"]
     for name in (*left, *of_others):

@@ -149,7 +149,7 @@ def wall_turns(scene: Scene, start: tuple[float, float, float], **changes: Any) 
         while model.states.turn_rate[0] != 0:
             model.env.run(until=model.env.now + 1)
         headings.append(pose(model)[2])
-        assert math.dist(pose(model)[:2], start[:2]) < 0.016    # it turned in place and drives now
+        assert math.dist(pose(model)[:2], start[:2]) < 0.016  # it turned in place and drives now
     return headings
 
 
@@ -214,7 +214,7 @@ def test_a_new_leg_begins_after_every_turn(scene: Scene, monkeypatch: pytest.Mon
 def test_a_new_leg_begins_after_an_action(scene: Scene) -> None:
     model = scene([(0.0, 0.0, 0.0)], [(0.25, 0.0, 0.0)], changes={"leg_mean": 1e6})
     model.env.run(until=1)
-    assert legs_begun(model) == [0]    # the leg of robot 1
+    assert legs_begun(model) == [0]  # the leg of robot 1
     while model.robots[0].state == "A":
         model.env.run(until=model.env.now + 1)
     action = model.robots[0].t_a[1]

@@ -174,7 +174,7 @@ def test_the_rewards_of_the_table_follow_from_its_times(played: GameModel) -> No
                 assert math.isnan(row["q"])
                 continue
             active, t_a, t_p = row["active"] / 8, row["t_a"], row["t_p"]
-            assert 1 <= row["active"] <= 8    # at least the sensor towards the robot ahead
+            assert 1 <= row["active"] <= 8  # at least the sensor towards the robot ahead
             if individual:
                 expected = active * t_p - active * 0.125 * t_a
             else:

@@ -16,7 +16,7 @@ from kswarms.model.description.parameters import parse_parameters
 from kswarms.scenarios.calibration import fit
 from kswarms.scenarios.calibration import shares as shares_module
 from kswarms.scenarios.calibration.fit import Setup, error_of
-from kswarms.scenarios.calibration.games import START, learning_game, texts_of, to_candidate, to_place
+from kswarms.scenarios.calibration.games import START, learning_game, texts_of, to_candidate, to_position
 from kswarms.scenarios.runs.run import Run
 
 TARGET = {("avoid", 6): 10.0, ("avoid", 30): 60.0, ("attack", 6): 2.0, ("attack", 30): 30.0}
@@ -136,7 +136,7 @@ def test_the_search_leaves_the_global_generator_alone(tmp_path: Path) -> None:
 def test_another_setup_needs_another_directory_or_a_fresh_start(tmp_path: Path) -> None:
     calibrate(TINY, Table(), tmp_path)
     other = TINY.replace(free=("friction", "flight_duration"))
-    with pytest.raises(InputError, match="holds a fit of another setup"):
+    with pytest.raises(InputError, match="has another setup"):
         calibrate(other, Table(), tmp_path)
     trace = calibrate(other, Table(), tmp_path, fresh=True)
     assert set(trace["start"]) == {"friction", "flight_duration"}
@@ -146,7 +146,7 @@ def test_another_setup_needs_another_directory_or_a_fresh_start(tmp_path: Path) 
 @pytest.mark.parametrize("content", ["", "[]", "3", '{"setup": {}}', '{"setup": 1, "shares": {}}'])
 def test_a_foreign_file_is_refused_and_kept(content: str, tmp_path: Path) -> None:
     (tmp_path / "shares.json").write_text(content)
-    with pytest.raises(InputError, match=r"holds a shares\.json of something else"):
+    with pytest.raises(InputError, match=r"has a shares\.json that is no file of a fit"):
         calibrate(TINY, Table(), tmp_path)
     assert (tmp_path / "shares.json").read_text() == content
 
@@ -237,7 +237,7 @@ def test_the_start_values_are_the_defaults() -> None:
     parameters, rule = texts_of(START)
     assert parse_parameters(parameters) == parse_parameters("fitted")
     assert rule == f"ucb(gamma={START['gamma']})"
-    again = to_candidate(list(START), to_place(START))
+    again = to_candidate(list(START), to_position(START))
     assert again == {name: float(f"{value:.4g}") for name, value in START.items()}
 
 

@@ -24,7 +24,7 @@ def test_scenarios_are_unique_and_in_the_order_of_the_ids(names: list[str], ids:
     [("table-6.4", "did you mean table-6.3"), ("fig-7.20", "did you mean fig-7.2"), ("q", "see `kswarms")],
 )
 def test_an_unknown_id_is_refused_with_a_hint(name: str, hint: str) -> None:
-    with pytest.raises(InputError, match=rf"^id='{name}': must be in the catalogue; {hint}"):
+    with pytest.raises(InputError, match=rf"^id='{name}': must be a scenario or table; {hint}"):
         select_scenarios(["fig-6.1a", name])
 
 

@@ -13,7 +13,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.agents.learning.rewards import WLU, IndividualUtility
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.game_model import GameModel
-from kswarms.scenarios.contribution.games import RECORD, contributions, robots_of
+from kswarms.scenarios.contribution.games import RECORD, contributions, parse_robots
 from kswarms.scenarios.contribution.table import FILE, SCHEMA, prepare_table, write_table
 from kswarms.scenarios.runs.run import digest
 from kswarms.scenarios.runs.sweep import play_all
@@ -40,13 +40,13 @@ def played(game: Game, seed: int) -> GameModel:
     [(None, range(7)), ("S2", (4, 5, 6)), ("3", (3,)), (" 5, 0,5", (0, 5)), ("6,S1", (0, 1, 2, 3, 6))],
 )
 def test_robots_are_named_by_number_or_swarm(text: str | None, robots: Sequence[int]) -> None:
-    assert robots_of(GAME, text) == tuple(robots)
+    assert parse_robots(GAME, text) == tuple(robots)
 
 
 @pytest.mark.parametrize("text", ["7", "-1", "S3", "S0", "s1", "1.0", "01", "all", "", "1,,2", "1-3"])
 def test_unknown_robots_are_refused(text: str) -> None:
     with pytest.raises(InputError, match=r"^robots='.*': must be robots, 0 to 6, or swarms, S1, S2$"):
-        robots_of(GAME, text)
+        parse_robots(GAME, text)
 
 
 @pytest.mark.parametrize("absent_from", ["learning", "game"])
@@ -155,7 +155,7 @@ def test_a_foreign_file_is_refused_and_kept(tmp_path: Path) -> None:
     for content in (b"mine", (tmp_path / FILE).read_bytes()):
         (tmp_path / FILE).write_bytes(content)
         before = (tmp_path / FILE).read_bytes()
-        with pytest.raises(InputError, match=r"holds a contribution\.parquet that is no table of kswarms"):
+        with pytest.raises(InputError, match=r"has a contribution\.parquet that is no table of kswarms"):
             prepare_table(tmp_path)
         assert (tmp_path / FILE).read_bytes() == before
 
