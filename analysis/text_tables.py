@@ -28,10 +28,10 @@ _NUMBER: Final = re.compile(r"^(–$|[+−-]?[\d.]+(\s|$))")
 
 @dataclass(frozen=True)
 class TextTable:
-    """A table of strings; the first cell of a row names it.
+    """A table of strings; the first cell of each row is its name.
 
-    Names of columns in `header` may contain line breaks. `caption` is the text below: units, seeds,
-    intervals. `marks` maps the text of a cell to its HTML class.
+    `header` has the column names, which may contain line breaks. `caption` is the text below the table:
+    units, seeds, intervals. `marks` maps the text of a cell to its HTML class.
     """
 
     header: list[str]

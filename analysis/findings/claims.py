@@ -9,7 +9,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.findings.quantity import LEARNED, Quantity
 
 
-class _OverDensities(FrozenModel):
+class _ClaimAtDensities(FrozenModel):
     """A claim about quantities at some densities.
 
     Attributes
@@ -34,7 +34,7 @@ class _OverDensities(FrozenModel):
         return tuple(item for item in flat if isinstance(item, Quantity))
 
 
-class Compare(_OverDensities):
+class Compare(_ClaimAtDensities):
     """A comparison of two quantities, or of a quantity and a number, seed by seed.
 
     Attributes
@@ -66,7 +66,7 @@ class Compare(_OverDensities):
         return self
 
 
-class Overtake(_OverDensities):
+class Overtake(_ClaimAtDensities):
     """One quantity overtakes another between two densities, and stays ahead.
 
     Attributes
@@ -92,14 +92,14 @@ class Overtake(_OverDensities):
         return self
 
 
-class Peak(_OverDensities):
+class Peak(_ClaimAtDensities):
     """A quantity rises with N, then falls: at some density it exceeds both the first and the last."""
 
     kind: Literal["rise then fall"] = "rise then fall"
     quantity: Quantity
 
 
-class Trend(_OverDensities):
+class Trend(_ClaimAtDensities):
     """A quantity rises with N: Spearman's rank correlation of its mean with N exceeds `above`, −1 … 1."""
 
     kind: Literal["trend"] = "trend"
@@ -107,7 +107,7 @@ class Trend(_OverDensities):
     above: float = Field(default=0.0, ge=-1, lt=1)
 
 
-class Share(_OverDensities):
+class Share(_ClaimAtDensities):
     """More than `above` percent of a swarm's robots in all games learned an action."""
 
     kind: Literal["share above"] = "share above"
@@ -122,7 +122,7 @@ class Share(_OverDensities):
         return self
 
 
-class Agreement(_OverDensities):
+class Agreement(_ClaimAtDensities):
     """Learned shares agree with the published table.
 
     Attributes

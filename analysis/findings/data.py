@@ -34,22 +34,19 @@ class ClaimData:
         played = sorted(int(n) for n in common)
         self.densities = [n for n in claim.densities or played if n in played]
         if not self.densities:
-            raise NoDataError(
-                f"no runs at {format_densities(claim.densities) if claim.densities else 'the same N'}"
-            )
+            where = format_densities(claim.densities) if claim.densities else "the same N"
+            raise NoDataError(f"no runs at {where}")
         absent = [n for n in claim.densities if n not in played]
-        self.notes = [
-            format_densities(self.densities),
-            f"without {format_densities(absent)}" if absent else "",
-        ]
+        self.notes = [format_densities(self.densities)]
+        self.notes += [f"without {format_densities(absent)}"] if absent else []
 
     def at(self, densities: Sequence[int]) -> list[pd.DataFrame]:
         """Return the tables at some densities, with the seeds that all tables have at these densities."""
-        cut = [table[list(densities)].dropna() for table in self.tables]
-        seeds = cut[0].index
-        for table in cut[1:]:
+        tables = [table[list(densities)].dropna() for table in self.tables]
+        seeds = tables[0].index
+        for table in tables[1:]:
             seeds = seeds.intersection(table.index)
-        return [table.loc[seeds] for table in cut]
+        return [table.loc[seeds] for table in tables]
 
     def complete(self) -> list[pd.DataFrame]:
         """Return the tables at all densities, with the seeds that all tables have at each density."""
@@ -70,7 +67,7 @@ def sample(results: Results, quantity: Quantity) -> pd.DataFrame:
 
 
 def sizes(results: Results, quantity: Quantity) -> pd.DataFrame:
-    """Return the number of robots of a quantity, by seed and N."""
+    """Return the number of robots in the swarms of a quantity, by seed and N."""
     return _by_seed(_sum_swarms(results, quantity)["size"])
 
 

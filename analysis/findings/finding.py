@@ -18,7 +18,7 @@ class Finding(FrozenModel):
     Attributes
     ----------
     id, statement : str
-        Short name, and a sentence.
+        Short name, and the statement as a sentence.
     source : str
         Section and figure with the statement.
     claim : Claim

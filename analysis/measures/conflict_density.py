@@ -11,8 +11,7 @@ def conflict_density(conflicts: pd.DataFrame, half: float = 1.0) -> np.ndarray:
     """Return the number of conflicts that begin in each cell, averaged over the games.
 
     The column `run`, if there is one, identifies the game; `half` is half the side of the arena (m). The
-    result is a square matrix of float64: row i is the i-th cell in y from below, column j the j-th in x from
-    the left.
+    result is a square matrix of float64; rows are cells in y from below, columns cells in x from the left.
     """
     edges = np.linspace(-half, half, round(2 * half / CELL) + 1)
     counts, *_ = np.histogram2d(conflicts["y"], conflicts["x"], bins=(edges, edges))

@@ -23,12 +23,13 @@ Floats = NDArray[np.float64]
 _MIN_ROBOTS: Final = 3
 """Minimum number of robots for a rank correlation."""
 
-_SELECTION: Final = ["scenario", "condition", "n", "absent_from"]
+_SELECTION: Final = ("scenario", "condition", "n", "absent_from")
 MEASURES: Final = {"pucks": "pucks", "time": "s"}
 """Kinds of SUD and their units."""
 QUANTITIES: Final = (*MEASURES, "reward", "reward_rate")
 """Quantities of a robot: contributions, reward in a game (s), reward per second."""
 OTHERS: Final = ("mates", "opponents")
+"""Other robots: in the same swarm, and in other swarms."""
 _TIMES: Final = ("t_a", "t_a_without", "t_p", "t_p_without")
 
 
@@ -60,8 +61,8 @@ def select_contributions(rows: pd.DataFrame, **selection: object) -> pd.DataFram
     Returns
     -------
     pandas.DataFrame
-        The columns of `rows`; `pucks` and `time` (s), the contributions to SUD; `reward_rate`, the reward per
-        second of conflicts and following program time (Eq. 4.15), NaN without conflicts.
+        The columns of `rows`, and: `pucks` and `time` (s), the contributions to SUD; `reward_rate`, reward
+        per second of conflicts and following program time (Eq. 4.15), NaN without conflicts.
     """
     for name, value in selection.items():
         if value not in set(rows[name]):
@@ -87,11 +88,9 @@ def measures_with_values(rows: pd.DataFrame) -> list[str]:
 def mean_contributions(rows: pd.DataFrame) -> pd.DataFrame:
     """Return means over the seeds for each robot, and for the mean robot of each swarm.
 
-    `rows` come from `select_contributions`.
-
-    There is one row for each `swarm` and `robot`, then one row with robot −1 for the mean robot of each
-    swarm: `seeds`; and for each of `QUANTITIES` its mean, under its own name, with its 95 % interval,
-    ``…_low`` and ``…_high``, NaN for fewer than six seeds.
+    `rows` come from `select_contributions`. The result has one row for each `swarm` and `robot`, then one row
+    with robot −1 for the mean robot of each swarm. Columns are `seeds`, and for each of `QUANTITIES` its mean
+    (column of the same name) and 95 % interval (``…_low``, ``…_high``; NaN for fewer than six seeds).
     """
     key = ["swarm", "robot"]
     mean_robot = rows.groupby(["swarm", "seed"])[list(QUANTITIES)].mean().reset_index().assign(robot=-1)
@@ -111,9 +110,9 @@ def rank_correlations(rows: pd.DataFrame) -> pd.DataFrame:
     -------
     pandas.DataFrame
         One row for each `swarm` of at least three robots and each `measure`, with Spearman's ρ and its 95 %
-        interval: of the robots' means over the seeds (``robots``, ``…_low``, ``…_high``), and of the robots
-        in one game, averaged over the games (``games``, ``…_low``, ``…_high``). NaN if all robots have the
-        same value; the bounds are NaN for fewer than six seeds.
+        interval. ``robots``, ``…_low``, ``…_high``: ρ of the robots' means over the seeds. ``games``,
+        ``…_low``, ``…_high``: ρ within a game, averaged over the games. ρ is NaN if all robots have the same
+        value; the bounds are NaN for fewer than six seeds.
     """
     table = []
     for swarm, of_swarm in rows.groupby("swarm"):

@@ -28,12 +28,12 @@ def learning_conflicts(conflicts: pd.DataFrame) -> pd.DataFrame:
 
 
 def choices(conflicts: pd.DataFrame, by: Sequence[str] = ()) -> pd.DataFrame:
-    """Return the share of each action among the choices of learners in one game, over the learning time.
+    """Return the share of each action in the choices of learners over the learning time of one game.
 
-    `by` are further columns to group by: ``robot``, or none. There is one row for each `swarm`,
+    `by` lists further columns to group by, such as ``robot``. The result has one row for each `swarm`,
     `opponent_swarm` (int64), column of `by`, `time` (float64, s: middle of one of `BINS` intervals) and
-    `action` (str), with `share` (float64) of the conflicts in that interval. An interval without conflicts
-    has no row. `InputError` if no swarm learned.
+    `action` (str), with its `share` (float64) of the conflicts. Intervals without conflicts have no row.
+    `InputError` if no swarm learned.
     """
     rows = learning_conflicts(conflicts)
     rows = rows.assign(time=_middles(rows["start"]))
@@ -46,9 +46,9 @@ def choices(conflicts: pd.DataFrame, by: Sequence[str] = ()) -> pd.DataFrame:
 def arm_values(conflicts: pd.DataFrame) -> pd.DataFrame:
     """Return Q of each learner's arms over the learning time (Eq. 4.15); `InputError` if no swarm learned.
 
-    There is one row for each `swarm`, `opponent_swarm`, `robot` (int64), `action` (str) and `time` (float64,
-    s: middle of one of `BINS` intervals), with `q` (float64, reward per second): the latest value. An arm has
-    no row before its first trial.
+    The result has one row for each `swarm`, `opponent_swarm`, `robot` (int64), `action` (str) and `time`
+    (float64, s: middle of one of `BINS` intervals), with the latest `q` (float64, reward per second). An arm
+    has no row before its first trial.
     """
     rows = learning_conflicts(conflicts).dropna(subset="q").sort_values("start")
     rows = rows.assign(time=_middles(rows["start"]))
@@ -67,9 +67,8 @@ def _middles(start: pd.Series) -> np.ndarray:
 def preferences(robots: pd.DataFrame) -> pd.DataFrame:
     """Return the arms of each learner at the end, from `robots.parquet`; `InputError` if no robot learned.
 
-    There is one row for each `run` (if `robots` has it), `swarm`, `opponent_swarm`, `robot` (int64) and tried
-    `action` (str), with `q` (float64, reward per second) and `learned` (bool): whether it is the robot's
-    best.
+    The result has one row for each `run` (if given), `swarm`, `opponent_swarm`, `robot` (int64) and tried
+    `action` (str), with `q` (float64, reward per second) and `learned` (bool): whether it is the best action.
     """
     keys = [name for name in ("run", "swarm", "robot") if name in robots]
     arms = robots[[*keys, "arms"]].explode("arms").dropna(subset="arms").reset_index(drop=True)

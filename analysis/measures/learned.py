@@ -66,8 +66,8 @@ def named_curves(cells: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     curves = []
     for _, curve in cells.groupby(_CURVE, sort=False):
         first = curve.iloc[0]
-        words = [str(first[part]) for part in differing or ["learned"]]
+        parts = [str(first[part]) for part in differing or ["learned"]]
         if opponents.max() > 1:
-            words.append(f"S{first['opponent']}")
-        curves.append((", ".join(words), curve))
+            parts.append(f"S{first['opponent']}")
+        curves.append((", ".join(parts), curve))
     return curves

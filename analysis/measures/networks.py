@@ -22,9 +22,9 @@ def meeting_network(conflicts: pd.DataFrame) -> nx.Graph:
     Returns
     -------
     networkx.Graph
-        A node for each robot that began a conflict or was met in one, with its `swarm` (int, from 1); an edge
-        for each pair that met, with `meetings` (int): conflicts between them, begun by either; `time` (float,
-        robot-seconds): T(a) of these conflicts; and `kind` (str): ``intra`` or ``inter``.
+        A node for each robot in a conflict, with its `swarm` (int, from 1). An edge for each pair that met,
+        with `meetings` (int): number of conflicts that either robot began; `time` (float, robot-seconds):
+        T(a) of these conflicts; and `kind` (str): ``intra`` or ``inter``.
     """
     if "run" in conflicts and conflicts["run"].nunique() > 1:
         raise InputError("conflicts", f"{conflicts['run'].nunique()} runs", "must be of one game")
@@ -48,8 +48,8 @@ def describe_network(network: nx.Graph) -> dict[str, float]:
     * `robots`, `pairs` that met, `met`: share of all pairs that met, `meetings`;
     * `time`: robot-seconds in conflict, `inter`: share of that time between swarms;
     * `degree`: mean number of robots that a robot met, `strength`: mean time of a robot in meetings (s);
-    * `assortativity` of pairs by swarm-ID, `assortativity_time`: pairs weighted by time; `chance`: both if
-      every robot met every other one equally, which is below 0 because no robot meets itself.
+    * `assortativity` by swarm-ID: of pairs; `assortativity_time`: of pairs weighted by time; `chance`: of a
+      complete network, which is below 0 because no robot meets itself.
     """
     swarms = sorted(set(nx.get_node_attributes(network, "swarm").values()))
     sizes = np.array([sum(s == swarm for _, s in network.nodes(data="swarm")) for swarm in swarms], float)
@@ -74,8 +74,8 @@ def describe_network(network: nx.Graph) -> dict[str, float]:
 def mixing_matrix(network: nx.Graph, weight: str | None) -> np.ndarray:
     """Return the sums of an edge attribute, ``time`` or ``meetings``, by pair of swarms; None counts edges.
 
-    The matrix is symmetric, float64, shape (K, K). Each pair counts once from each side, so a row sums to the
-    meetings of its robots with all swarms.
+    The matrix is symmetric, float64, shape (K, K). An edge within a swarm counts twice, so that a row sums to
+    the meetings of its robots with all swarms.
     """
     swarm = nx.get_node_attributes(network, "swarm")
     index = {name: k for k, name in enumerate(sorted(set(swarm.values())))}
@@ -104,7 +104,7 @@ def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:
     pandas.DataFrame
         One row for each moment from the first start to the last end of a conflict: `time` (float64, s),
         `jams` (int64): connected components of at least `MIN_JAM_SIZE` robots, `jammed` (int64): robots in
-        these, `largest` (int64): robots in the largest component, 0 without any conflict.
+        jams, `largest` (int64): robots in the largest component, 0 without conflicts.
     """
     if every <= 0:
         raise InputError("every", every, "must be above 0")
@@ -127,11 +127,12 @@ def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:
     graph = coo_array((np.ones(len(a), bool), (a, b)), shape=(nodes, nodes))
     _, component = connected_components(graph, directed=False)
     size = np.bincount(component)
-    at = np.zeros(len(size), int)
-    at[component] = np.arange(nodes) // robots
-    groups = pd.DataFrame({"at": at, "size": size})[size > 1]
-    jammed = groups[groups["size"] >= MIN_JAM_SIZE].groupby("at")["size"].agg(["size", "sum"])
-    columns = {"jams": jammed["size"], "jammed": jammed["sum"], "largest": groups.groupby("at")["size"].max()}
+    moment_of = np.zeros(len(size), int)
+    moment_of[component] = np.arange(nodes) // robots
+    groups = pd.DataFrame({"moment": moment_of, "size": size})[size > 1]
+    jammed = groups[groups["size"] >= MIN_JAM_SIZE].groupby("moment")["size"].agg(["size", "sum"])
+    largest = groups.groupby("moment")["size"].max()
+    columns = {"jams": jammed["size"], "jammed": jammed["sum"], "largest": largest}
     over_time = pd.DataFrame(columns, index=range(moments)).fillna(0).astype(np.int64)
     over_time.insert(0, "time", (origin + np.arange(moments)) * every)
     return over_time

@@ -20,10 +20,10 @@ _TIME_SHARE_SCENARIOS: Final = {"fig-6.3"}
 
 @dataclass(frozen=True)
 class Curve:
-    """One curve of a scenario: its name in legends and tables, and its rows of `runs.parquet`.
+    """One curve of a scenario: its label in legends and tables, and its rows of `runs.parquet`.
 
-    `condition` is the index of the condition, None if the scenario has only one. `swarm` is the number of the
-    swarm, None if only conditions differ.
+    `condition` is the index of the condition, None if the scenario has a single condition. `swarm` is the
+    number of the swarm, None if only conditions differ.
     """
 
     label: str

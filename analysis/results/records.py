@@ -17,10 +17,10 @@ def recorded_runs(directory: Path, table: str) -> set[str]:
 
 
 def read_conflicts(directory: Path, runs: Collection[str] | None = None, seen: bool = False) -> pd.DataFrame:
-    """Read the table of ``kswarms run --record conflicts --out``: a row for each conflict that a robot began.
+    """Read `conflicts.parquet` of `kswarms run --record conflicts --out`: one row for each begun conflict.
 
-    `runs` are the runs to read, by default all. `seen` also reads the column of that name, the robots that
-    the sensors read: the bulk of the file. Errors are those of `read_table`.
+    `runs` are the runs to read, by default all. With `seen`, the column `seen` (robots that the sensors read)
+    is included; it is most of the file. Errors are those of `read_table`.
     """
     columns = [name for name in column_names("conflicts") if seen or name != "seen"]
     return read_table(directory, "conflicts", columns, runs)

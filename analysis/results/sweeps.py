@@ -9,13 +9,13 @@ from kswarms.agents.common.columns import column_names
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.results.tables import check_columns
 
-_POINT: Final = ("run", "scenario", "condition", "n", "seed")
-_NOT_OF_SWARM: Final = {*_POINT, "swarm", "duration", "ended"}
-_OF_SWARM: Final = [name for name in column_names("runs") if name not in _NOT_OF_SWARM]
-_MESA: Final = {"RunId", "iteration", "Step", "AgentID"}
+_KEY_COLUMNS: Final = ("run", "scenario", "condition", "n", "seed")
+_GAME_COLUMNS: Final = {*_KEY_COLUMNS, "swarm", "duration", "ended"}
+_SWARM_COLUMNS: Final = [name for name in column_names("runs") if name not in _GAME_COLUMNS]
+_MESA_COLUMNS: Final = {"RunId", "iteration", "Step", "AgentID"}
 _MODEL_REPORTERS: Final = {"time", "game_time", "ended"}
 _AGENT_REPORTERS: Final = {"swarm", "state", "puck", "x", "y", "heading"}
-_NO_PARAMETERS: Final = {*_POINT, *_MESA, *_MODEL_REPORTERS, *_AGENT_REPORTERS}
+_NOT_PARAMETERS: Final = {*_KEY_COLUMNS, *_MESA_COLUMNS, *_MODEL_REPORTERS, *_AGENT_REPORTERS}
 
 
 class PlayedModel(Protocol):
@@ -56,15 +56,15 @@ def tables_of_sweep(
         swarms = _swarms(game)
         size = sum(swarm["size"] for swarm in swarms)
         values = (str(run), scenario, conditions[index], game.get("n", size), game.get("seed", 0))
-        point = dict(zip(_POINT, values, strict=True))
-        runs += [point | swarm for swarm in swarms]
-        policies += [point | row for row in (models[index].policy_results() if models else ())]
-    table = _typed(runs, "runs")
+        key = dict(zip(_KEY_COLUMNS, values, strict=True))
+        runs += [key | swarm for swarm in swarms]
+        policies += [key | row for row in (models[index].policy_results() if models else ())]
+    table = _make_table(runs, "runs")
     if table.duplicated(["condition", "n", "seed", "swarm"]).any():
         raise InputError(
             "by", by, "must distinguish all games: two games have the same condition, N and seed"
         )
-    return table, _typed(policies, "policies") if policies else None
+    return table, _make_table(policies, "policies") if policies else None
 
 
 def _items(source: Sweep) -> list[Any]:
@@ -76,13 +76,13 @@ def _items(source: Sweep) -> list[Any]:
 def _end_of_game(model: PlayedModel) -> dict[str, Any]:
     """Return the outcome of a model as a row of `mesa.batch_run`."""
     swarms = model.results()
-    game = {f"{name}_{swarm['swarm']}": swarm[name] for swarm in swarms for name in _OF_SWARM}
+    game = {f"{name}_{swarm['swarm']}": swarm[name] for swarm in swarms for name in _SWARM_COLUMNS}
     game |= {"game_time": swarms[0]["duration"], "ended": swarms[0]["ended"], "seed": model.seed}
     return game | {"policies": ",".join(swarm["policy"] for swarm in swarms), "duration": model.game.duration}
 
 
 def _swarms(game: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return the values of each swarm at the end of a game; ``duration`` is the time that was played."""
+    """Return the values of each swarm at the end of a game; ``duration`` is the played time."""
     if not {"game_time", "ended", "pucks_1"} <= game.keys():
         raise InputError("source", sorted(map(str, game)), 'must have model reporters (record="model")')
     if not game["ended"]:
@@ -92,15 +92,15 @@ def _swarms(game: Mapping[str, Any]) -> list[dict[str, Any]]:
     # A data frame has NaN for swarms that this game lacks.
     while pd.notna(game.get(f"pucks_{len(swarms) + 1}")):
         k = len(swarms) + 1
-        swarms.append({"swarm": k} | {name: game[f"{name}_{k}"] for name in _OF_SWARM} | of_game)
+        swarms.append({"swarm": k} | {name: game[f"{name}_{k}"] for name in _SWARM_COLUMNS} | of_game)
     return swarms
 
 
 def _conditions(games: Sequence[Mapping[str, Any]], by: Sequence[str] | None) -> list[str]:
     """Return the condition of each game, such as ``side=2.0``; `by` defaults to the varying parameters."""
     if by is None:
-        reported = {f"{name}_{k}" for name in (*_OF_SWARM, "share_a", "share_p") for k in range(1, 100)}
-        candidates = [name for name in games[0] if name not in _NO_PARAMETERS | reported]
+        reported = {f"{name}_{k}" for name in (*_SWARM_COLUMNS, "share_a", "share_p") for k in range(1, 100)}
+        candidates = [name for name in games[0] if name not in _NOT_PARAMETERS | reported]
         by = [name for name in candidates if len({_text(game.get(name)) for game in games}) > 1]
     return [", ".join(f"{name}={_text(game.get(name))}" for name in by) for game in games]
 
@@ -112,7 +112,7 @@ def _text(value: Any) -> str:
     return str(getattr(value, "__name__", value))
 
 
-def _typed(rows: Sequence[Mapping[str, Any]], table: str) -> pd.DataFrame:
+def _make_table(rows: Sequence[Mapping[str, Any]], table: str) -> pd.DataFrame:
     columns, integers = column_names(table), column_names(table, "integer")
     frame = pd.DataFrame(rows, columns=columns).astype(dict.fromkeys(integers, "int64"))
     return check_columns(frame, table, columns)

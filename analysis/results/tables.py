@@ -22,8 +22,8 @@ def read_table(
 ) -> pd.DataFrame:
     """Read a table of a results directory and check it against the schema.
 
-    By default all runs and all columns of the file are read, including columns beyond the schema. Columns of
-    the schema have its kinds: text is str, numbers are numeric and complete.
+    By default all runs and all columns are read, including columns that the schema lacks. Columns of the
+    schema have its types: text is str, numbers are numeric.
 
     Raises
     ------

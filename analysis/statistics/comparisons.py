@@ -107,8 +107,8 @@ def adjust_p_values(
 ) -> list[float]:
     """Return p-values corrected for multiple tests, in the same order.
 
-    `p_values` are those of all tests that were made, significant or not. ``holm`` controls the probability of
-    any false finding, ``benjamini-hochberg`` the expected share of false findings.
+    `p_values` are those of all tests, significant or not. ``holm`` controls the family-wise error rate,
+    ``benjamini-hochberg`` the false discovery rate.
     """
     names = {"holm": "holm", "benjamini-hochberg": "fdr_bh"}
     if method not in names:
@@ -127,9 +127,9 @@ def additional_seeds(
 ) -> int | None:
     """Return the number of additional seeds for a test to distinguish the mean difference from 0.
 
-    The test is Student's, two-sided, at the level `confidence`. Its `power`, 0 … 1, is the probability that
-    it rejects a mean of 0. Mean and standard deviation of `differences`, shape (seeds,), are taken as the
-    true ones. The result is 0 if there are enough seeds, and None if a million are too few.
+    The test is the two-sided t-test at the level `confidence`; its `power`, 0 … 1, is the probability that it
+    rejects a mean of 0. The mean and the standard deviation of `differences`, shape (seeds,), are assumed to
+    be the true values. The result is 0 if the seeds suffice, and None if a million seeds are too few.
     """
     values = np.asarray(differences, dtype=np.float64)
     seeds = check_seeds(values, 2)

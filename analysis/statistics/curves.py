@@ -36,8 +36,8 @@ class Overtaking:
 def crossings(densities: ArrayLike, differences: ArrayLike) -> tuple[float, ...]:
     """Return each N where a curve changes sign, in ascending order.
 
-    Both arguments have the shape (densities,): N, ascending, and the value there, linear in between. A
-    stretch of zeros between different signs is one crossing in its middle; one between equal signs is none.
+    Both arguments have the shape (densities,): ascending N, and the values of the curve. Zeros between
+    different signs are one crossing in their middle; zeros between equal signs are no crossing.
     """
     n, values = _curve(densities, differences)
     (nonzero,) = np.nonzero(values)
@@ -58,8 +58,8 @@ def overtaking(
     """Return where one curve overtakes another, with an interval over the seeds.
 
     `differences`, shape (seeds, densities), are first curve − second curve at two or more ascending
-    `densities`. Noise makes similar curves cross often, so the interval is of the last crossing, after which
-    the first curve stays ahead. Every resample has one if ±inf counts, so no resample is left out.
+    `densities`. Similar curves cross often because of noise, so the interval is that of the last crossing,
+    after which the first curve stays ahead. Resamples without such a crossing count as ±inf.
     """
     n, values = _samples(densities, differences)
     last = bootstrap_interval(values, lambda means: _last_rise(n, means), confidence)

@@ -59,8 +59,8 @@ def bootstrap_interval(
     confidence : float
         Level of the interval, 0 … 1.
     smooth : bool
-        False for a statistic of ranks. BCa is not valid for it: where all ranks are chance, intervals of 95 %
-        for a rank correlation excluded 0 in a fifth of all samples. Its bounds are percentiles.
+        False for a statistic of ranks: bounds are percentiles, because BCa is not valid. For random ranks,
+        95 % intervals by BCa of a rank correlation excluded 0 in a fifth of all samples.
     """
     values = np.asarray(samples, dtype=np.float64)
     seeds = check_seeds(values, 1)

@@ -12,9 +12,9 @@ from kswarms.analysis.text_tables import span
 def mean_by_group(rows: pd.DataFrame, key: Sequence[str], quantity: str) -> pd.DataFrame:
     """Return the mean of a column in each group of rows, with its 95 % interval.
 
-    `rows` has one row for each seed of a group, in any order; the columns `key` identify a group. Missing
-    values are left out. The result has one row for each group, sorted: `key`, ``seeds`` (int64), ``mean``,
-    ``low``, ``high`` (float64). The bounds are NaN for fewer than six seeds.
+    `rows` has one row for each group and seed, in any order; the columns `key` identify a group. Missing
+    values are skipped. The result has one row for each group, sorted by `key`, with the columns `key`,
+    ``seeds`` (int64), ``mean``, ``low`` and ``high`` (float64). Bounds are NaN for fewer than six seeds.
     """
     # Sort by value too: resamples depend on the order of the seeds.
     ordered = rows.sort_values([*key, quantity])

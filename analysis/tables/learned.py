@@ -10,10 +10,10 @@ from kswarms.analysis.text_tables import TextTable, number, with_interval
 
 
 def learned_table(cells: pd.DataFrame) -> TextTable:
-    """Return the cells of `learned_shares` as text: a row for each N, as in the source's tables.
+    """Return the cells of `learned_shares` as a text table with a row for each N, like the source's tables.
 
-    Each curve has a column of measured percentages, after its published ones if there are any. The caption
-    has the mean absolute errors.
+    Each curve has a column of measured percentages, and before it a column of published percentages if there
+    are any. The caption has the mean absolute errors.
     """
     densities = sorted(set(cells["n"]))
     header, columns, errors = ["N"], [[str(n) for n in densities]], []

@@ -12,14 +12,14 @@ from kswarms.analysis.measures.quantities import (
 from kswarms.analysis.statistics.means import describe_seeds, mean_by_group
 from kswarms.analysis.text_tables import TextTable, with_interval
 
-_UNITS = {"pucks": "pucks deposited by the swarm", "sud": "SUD of S2 (pucks)"}
+_QUANTITY_LABELS = {"pucks": "pucks deposited by the swarm", "sud": "SUD of S2 (pucks)"}
 
 
 def scores(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
     """Return the numbers of the figure of a scenario (`kswarms.analysis.figures.over_n.figure_of`).
 
-    There is one row for each `quantity` (str: ``pucks``, ``sud`` or a kind of time share), `curve` (str: name
-    in the legend) and `n`, with `seeds`, `mean`, `low` and `high` as in `mean_by_group`.
+    The result has one row for each `quantity` (str: ``pucks``, ``sud`` or a kind of time share), `curve`
+    (str: name in the legend) and `n`, with `seeds`, `mean`, `low` and `high` as in `mean_by_group`.
     """
     rows = scenario_rows(runs, scenario)
     shown = shown_quantities(scenario)
@@ -43,9 +43,9 @@ def scores_table(frame: pd.DataFrame) -> TextTable:
     for (quantity, curve), column in frame.groupby(["quantity", "curve"], sort=False):
         header.append(f"{curve}\n{quantity}" if several else str(curve))
         by_density = column.set_index("n").reindex(densities)
-        form = ".1f" if quantity in _UNITS else ".3f"
+        form = ".1f" if quantity in _QUANTITY_LABELS else ".3f"
         cells = zip(by_density["mean"], by_density["low"], by_density["high"], strict=True)
         columns.append([with_interval(*cell, form) for cell in cells])
-    unit = "share of time in conflict" if several else _UNITS[frame["quantity"].iloc[0]]
+    label = "share of time in conflict" if several else _QUANTITY_LABELS[frame["quantity"].iloc[0]]
     seeds = describe_seeds(frame["seeds"].min(), frame["seeds"].max())
-    return TextTable(header, [list(row) for row in zip(*columns, strict=True)], f"{unit}; {seeds}")
+    return TextTable(header, [list(row) for row in zip(*columns, strict=True)], f"{label}; {seeds}")

@@ -63,7 +63,7 @@ def test_conditions_are_the_parameters_that_differ() -> None:
     assert len(runs) == 4 * 1 + 4 * 2
     named = read_results(rows[:1], by=["side"]).runs
     assert set(named["condition"]) == {"side=2.0"}
-    with pytest.raises(InputError, match=r"by=.*two games with one condition, N and seed"):
+    with pytest.raises(InputError, match=r"by=.*two games have the same condition, N and seed"):
         read_results(rows, by=["side"])
 
 

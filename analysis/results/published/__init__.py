@@ -35,7 +35,7 @@ def table_6_2() -> pd.DataFrame:
 def learned_percentages() -> pd.DataFrame:
     """Return Tables 6.1 and 6.2 as one table.
 
-    Forty rows. `scenario` (str): figure of the table; `learned` (str): ``attack`` (the other swarm) or
+    Forty rows. `scenario` (str): id of the figure; `learned` (str): ``attack`` (the other swarm) or
     ``flight within`` (the own swarm); `n` (int64): robots in all; `published` (float64): percent of the
     learning swarm's robots.
     """
@@ -56,8 +56,7 @@ def argos_fixed_policies() -> pd.DataFrame:
     """Return the games of two swarms with fixed policies in ARGoS 3.
 
     150 rows. `s1_policy`, `s2_policy` (str); `n` (int64): robots in all; `seed` (int64): 1 … 10; and for each
-    swarm k = 1, 2 `score1`, `score2` (int64): pucks; `ta_intra1` …, `ta_inter1` …, `tp1` … (float64):
-    robot-seconds in conflicts within the own swarm, in conflicts with the other swarm, and in the program. In
-    avoid against attack S1 avoids and S2 attacks.
+    swarm k = 1, 2: `score1`, `score2` (int64): pucks; `ta_intra1` …, `ta_inter1` …, `tp1` … (float64):
+    robot-seconds in conflicts within the swarm, in conflicts with the other swarm, and in the program.
     """
     return _read_csv("argos_fixed_policies.csv")

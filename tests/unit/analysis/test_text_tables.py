@@ -10,7 +10,7 @@ TABLE = TextTable(
 )
 
 
-def test_markdown() -> None:
+def test_a_table_is_converted_to_markdown() -> None:
     assert TABLE.to_markdown().splitlines() == [
         "| N | S1 pucks | fits | a\\|b |",
         "|--:|--:|---|---|",

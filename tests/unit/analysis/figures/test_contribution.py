@@ -22,7 +22,7 @@ def rows_of_two_swarms() -> pd.DataFrame:
     return select_contributions(pd.concat([first, second]))
 
 
-def test_the_scatter_shows_each_robot_where_its_means_are() -> None:
+def test_the_scatter_chart_shows_each_robot_at_its_means() -> None:
     rows = rows_of_two_swarms()
     figure = contribution_figure(rows, "a title")
     pucks, time = figure.axes

@@ -35,7 +35,7 @@ def graph(swarms: int) -> object:
     return polymatrix({(k, m): WITHIN if k == m else BETWEEN for k, m in pairs})
 
 
-def test_the_tree_shows_moves_chances_payoffs_and_information_sets() -> None:
+def test_the_tree_shows_actions_chances_payoffs_and_information_sets() -> None:
     figure = draw_extensive_form(extensive_form({1: WITHIN, 2: BETWEEN}, {1: 0.25, 2: 0.75}))
     texts = [text.get_text() for text in text_boxes(figure)]
     assert {"S1, p = 0.25", "S2, p = 0.75", "payoffs (own, met)"} <= set(texts)

@@ -9,7 +9,7 @@ from kswarms.model.description.arena import build_arena
 from tests.helpers.result_rows import PLACED
 
 
-def test_heat_maps_of_all_and_of_each_action_share_a_scale() -> None:
+def test_the_maps_of_all_conflicts_and_of_each_action_have_one_scale() -> None:
     arena = build_arena("symmetric", 2, 2.0, 0.16, 0.17, 0)
     figure = heat_map_figure(PLACED, "t", arena)
     *panels, colours = figure.axes
@@ -23,7 +23,7 @@ def test_heat_maps_of_all_and_of_each_action_share_a_scale() -> None:
     assert encode(figure, "png")
 
 
-def test_heat_map_of_one_action_without_places() -> None:
+def test_a_single_action_without_arena_has_one_map() -> None:
     panel, _ = heat_map_figure(PLACED[PLACED["action"] == "flight"].drop(columns="run")).axes
     assert panel.get_title() == "all: 3"
     assert panel.get_xlim() == (-1.0, 1.0)
@@ -32,7 +32,7 @@ def test_heat_map_of_one_action_without_places() -> None:
         heat_map_figure(PLACED.head(0))
 
 
-def test_maps_without_places_show_all_conflicts_of_a_large_arena() -> None:
+def test_maps_without_an_arena_cover_all_conflicts() -> None:
     panel, *_ = heat_map_figure(PLACED.assign(x=-3.2)).axes
     assert panel.get_xlim() == panel.get_ylim() == (-3.5, 3.5)
     assert panel.images[0].get_array().sum() == 2.0

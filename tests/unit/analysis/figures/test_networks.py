@@ -9,7 +9,7 @@ from tests.helpers.legends import legend_texts
 from tests.helpers.result_rows import MET
 
 
-def test_the_network_is_drawn_with_a_line_for_each_pair_and_its_time_in_the_matrix() -> None:
+def test_the_network_has_a_line_for_each_pair_and_the_matrix_has_its_time() -> None:
     figure = network_figure(meeting_network(MET), "title")
     circle, matrix, colours = figure.axes
     lines = [drawn.get_segments() for drawn in circle.collections if isinstance(drawn, LineCollection)]

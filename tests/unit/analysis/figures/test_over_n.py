@@ -93,7 +93,7 @@ def test_each_condition_of_one_swarm_has_a_curve() -> None:
     assert len({line.get_color() for line in curves(axes).values()}) == 2
 
 
-def test_conditions_of_several_swarms_keep_the_swarms_markers() -> None:
+def test_conditions_of_several_swarms_have_the_markers_of_the_swarms() -> None:
     figure = pucks_over_n(runs_of("fig-x", conditions=("", "delta=0.1")), "fig-x")
     *_, first, second = names = legend_texts(figure)
     assert names == ["–, S1: avoid", "–, S2: attack", "delta=0.1, S1: avoid", "delta=0.1, S2: attack"]
@@ -112,7 +112,7 @@ def test_the_legend_omits_the_arguments_of_a_policy() -> None:
         assert legend_texts(pucks_over_n(runs, "fig-x")) == ["S1: avoid", f"S2: {name}"]
 
 
-def test_labels_title_and_seeds() -> None:
+def test_the_figure_has_axis_labels_a_title_and_the_number_of_seeds() -> None:
     runs = runs_of("fig-x")
     figure = pucks_over_n(runs, "fig-x", "a title that is far too long for one line of the figure " * 2)
     (axes,) = figure.axes
@@ -136,7 +136,7 @@ def test_a_single_density_has_bars_as_intervals() -> None:
     assert [low < mean < high for (low, high), mean in zip(ends, (30, 40), strict=True)] == [True, True]
 
 
-def test_one_seed_at_one_density_without_pucks() -> None:
+def test_a_single_seed_without_pucks_can_be_drawn() -> None:
     figure = pucks_over_n(runs_of("fig-x", densities=[20], seeds=1).assign(pucks=0), "fig-x")
     (axes,) = figure.axes
     assert legend_title(figure) == "one seed"
@@ -146,7 +146,7 @@ def test_one_seed_at_one_density_without_pucks() -> None:
     assert low < 0 < high
 
 
-def test_many_densities_get_the_ticks_of_matplotlib() -> None:
+def test_matplotlib_chooses_the_ticks_of_many_densities() -> None:
     (axes,) = pucks_over_n(runs_of("fig-x", densities=range(2, 82, 2), seeds=2), "fig-x").axes
     assert len(axes.get_xticks()) < 20
 
@@ -161,7 +161,7 @@ def test_time_shares_have_a_panel_for_each_kind_of_conflict() -> None:
     assert legend_texts(figure) == ["S1: avoid", "S2: attack"]
 
 
-def test_sud_of_the_second_swarm_by_condition() -> None:
+def test_sud_is_drawn_for_the_second_swarm_by_condition() -> None:
     runs = runs_of("fig-7.10", swarms=(1, 2, 3), conditions=("avoid", "delta=0.1"))
     figure = sud_over_n(runs, "fig-7.10")
     (axes,) = figure.axes
@@ -183,7 +183,7 @@ def test_an_unknown_swarm_is_an_error() -> None:
         sud_over_n(runs_of("fig-6.15", swarms=(1,)), "fig-6.15")
 
 
-def test_write_figures_writes_each_scenario_with_runs_and_changes_no_settings(tmp_path: Path) -> None:
+def test_write_figures_writes_each_scenario_with_runs_and_keeps_settings(tmp_path: Path) -> None:
     settings = dict(mpl.rcParams)
     runs = pd.concat([runs_of("fig-6.1a"), runs_of("fig-6.3"), runs_of("fig-7.10"), runs_of("fig-7.12")])
     runs.to_parquet(tmp_path / "runs.parquet")

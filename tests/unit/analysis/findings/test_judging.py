@@ -1,4 +1,4 @@
-"""Judging: each kind of claim has results for each verdict."""
+"""Judging: results for each verdict of each kind of claim."""
 
 import math
 from collections.abc import Sequence
@@ -111,7 +111,7 @@ def test_a_share_of_robots_has_each_verdict(shares: Sequence[float], scale: floa
     assert verdict.unit == "% of robots"
 
 
-def test_few_robots_without_exception_prove_no_high_share() -> None:
+def test_a_few_robots_that_all_attack_do_not_prove_a_high_share() -> None:
     # 3 robots in each of 10 games: the exact binomial interval of 30 out of 30 starts at 88 %.
     results = learners([0.0], scenario="fig-6.8", opponent=2, densities=(6,))
     verdict = verdict_on(Share(quantity=WITHIN, above=99), results)
@@ -192,7 +192,7 @@ def test_different_seeds_are_not_paired(over: str, note: str) -> None:
 
 @pytest.mark.parametrize("lead", [FAR, NEAR, TIE, BEHIND, MIXED], ids=str)
 @pytest.mark.parametrize(("relation", "reverse"), [(">", "<"), (">=", "<="), ("within", "within")])
-def test_exchanging_the_sides_changes_nothing_else(
+def test_exchanging_the_sides_changes_only_the_sign(
     lead: Sequence[float], relation: str, reverse: str
 ) -> None:
     there = verdict_on(more(relation, margin=0.5), duel(lead))
@@ -210,7 +210,7 @@ def test_the_order_of_rows_does_not_matter() -> None:
 
 @pytest.mark.slow
 def test_a_tie_fails_in_at_most_5_percent_of_cases() -> None:
-    """The curves are equal: "at least as much at every N" is true, "more at every N" is false."""
+    """For equal curves, "at least as much at every N" is true and "more at every N" is false."""
     at_least, clearly = [], []
     for seed in range(60):
         draws = np.random.default_rng(seed).normal(size=(10, 4))

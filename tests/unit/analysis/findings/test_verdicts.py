@@ -12,7 +12,7 @@ BOTH = Quantity(scenario="duel")
 OVERTAKE = Overtake(ahead=S2, behind=S1, between=(16, 30))
 
 
-def test_a_verdict_at_every_density_shows_the_deciding_one() -> None:
+def test_a_verdict_at_every_density_shows_the_weakest_density() -> None:
     verdict = verdict_on(more(), duel([5, 3, 5, 5, 5]))
     assert verdict.effect == pytest.approx(3)
     assert verdict.low is not None
@@ -50,7 +50,7 @@ CLAIMS = [more(), more(over="mean over N"), OVERTAKE, Peak(quantity=S2), Trend(q
 
 
 @pytest.mark.parametrize("claim", CLAIMS, ids=str)
-def test_too_few_seeds_decide_nothing(claim: Claim) -> None:
+def test_too_few_seeds_give_no_decision(claim: Claim) -> None:
     verdict = verdict_on(claim, duel([-9, 9, 99, 9, 9], seeds=4))
     assert (verdict.verdict, verdict.low, verdict.high, verdict.seeds) == (UNDECIDED, None, None, 4)
     assert verdict.note.endswith("seeds")

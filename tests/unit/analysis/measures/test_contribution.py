@@ -25,7 +25,7 @@ from kswarms.analysis.statistics.intervals import bootstrap_interval
 from tests.helpers.contribution_rows import ROBOTS, SEEDS, contribution_rows, noise
 
 
-def test_a_contribution_is_sud_less_sud_without() -> None:
+def test_a_contribution_is_the_sud_minus_the_sud_without_the_robot() -> None:
     suds = {"sud": 7, "sud_without": [[3] * 4 + [9] * 4], "time_sud": 1.5, "time_sud_without": 2.0}
     rows = select_contributions(contribution_rows(**suds))
     assert set(rows["pucks"]) == {4.0, -2.0}
@@ -34,7 +34,7 @@ def test_a_contribution_is_sud_less_sud_without() -> None:
     assert select_contributions(contribution_rows(reward_time=0.0))["reward_rate"].isna().all()
 
 
-def test_several_questions_must_be_told_apart() -> None:
+def test_columns_with_several_values_need_a_selection() -> None:
     several = pd.concat([contribution_rows(), contribution_rows(n=26, sud=5)])
     assert set(select_contributions(several, n=26)["pucks"]) == {5.0}
     with pytest.raises(InputError, match=r"n=None: must be one of 16, 26"):
@@ -96,8 +96,8 @@ def test_rewards_in_the_order_of_contributions_have_rank_correlation_1(sign: int
     assert -1.0 <= found["games_low"] <= found["games_high"] <= 1.0
 
 
-def test_a_correlation_within_games_is_not_one_of_the_means() -> None:
-    """Rewards follow the chance of each game, but no robot is better than another."""
+def test_a_correlation_within_games_is_not_a_correlation_of_the_means() -> None:
+    """Reward and contribution depend on the same noise in each game, but all robots have the same mean."""
     chance = noise(1.0)
     chance -= chance.mean(axis=0)  # all means over the seeds are 0
     sud, reward = chance + noise(0.01, seed=3), chance + noise(0.01, seed=2)
@@ -108,7 +108,7 @@ def test_a_correlation_within_games_is_not_one_of_the_means() -> None:
 
 
 def test_intervals_of_independent_quantities_contain_0() -> None:
-    """Rewards independent of contributions, 80 times: some 5 % of 95 % intervals may miss 0."""
+    """Rewards are independent of contributions: about 5 % of the 80 intervals miss 0."""
     missed = {"robots": 0, "games": 0}
     for repetition in range(80):
         draws = {"time_sud": noise(3.0, 2 * repetition), "reward": noise(2.0, 2 * repetition + 1)}
@@ -170,14 +170,14 @@ def test_times_are_scaled_to_the_duration_with_the_robot() -> None:
     assert (found["t_a_without"], found["t_p_without"], found["share"]) == (150.0, 50.0, 0.5)
 
 
-def test_without_others_or_meetings_there_is_no_share() -> None:
+def test_the_share_is_missing_without_other_robots_or_meetings() -> None:
     no_mates = {f"mates_{what}": 0.0 for what in ("t_a", "t_a_without", "t_p", "t_p_without", "t_a_met")}
     found = freed_time(select_contributions(contribution_rows(**no_mates, opponents_t_a_met=0.0)))
     assert found["others"].tolist() == ["opponents"]
     assert found[["share", "share_low", "share_high"]].isna().all(axis=None)
 
 
-def test_sud_in_time_utility_is_that_of_the_measured_game() -> None:
+def test_time_sud_ignores_the_learning_phase() -> None:
     conflicts: dict[str, list[Any]] = {"phase": ["learning", "game", "game"], "robot": [0, 0, 1]}
     conflicts |= {"swarm": [1, 1, 2], "opponent_swarm": [2, 2, 1], "start": [0.0, 10.0, 11.0]}
     conflicts |= {"t_a": [2.0, 2.0, 3.0], "t_p": [5.0, 6.0, 4.0], "active": [1, 1, 1]}

@@ -10,7 +10,7 @@ from tests.helpers.result_rows import learning_conflicts as rows_of_learners
 LEARNING = rows_of_learners()
 
 
-def test_only_conflicts_that_bandits_decided_while_learning_count() -> None:
+def test_only_conflicts_decided_by_bandits_in_the_learning_phase_count() -> None:
     rows = learning_conflicts(LEARNING)
     assert len(rows) == 40
     assert set(zip(rows["swarm"], rows["opponent_swarm"], strict=True)) == {(2, 1)}
@@ -18,7 +18,7 @@ def test_only_conflicts_that_bandits_decided_while_learning_count() -> None:
         learning_conflicts(MET)
 
 
-def test_choices_of_the_swarm_and_of_each_robot() -> None:
+def test_choices_are_shares_by_swarm_or_by_robot() -> None:
     swarm = choices(LEARNING)
     fights = swarm[swarm["action"] == "fight"]
     assert fights[fights["time"] < 9.5]["share"].tolist() == [0.0] * 10
@@ -28,7 +28,7 @@ def test_choices_of_the_swarm_and_of_each_robot() -> None:
     assert last.set_index("robot")["share"].to_dict() == {2: 1.0, 3: 0.0}
 
 
-def test_q_is_the_latest_value_and_absent_before_the_first_trial() -> None:
+def test_q_is_the_latest_value_and_missing_before_the_first_trial() -> None:
     q = arm_values(LEARNING)
     fight = q[(q["robot"] == 2) & (q["action"] == "fight")].sort_values("time")
     assert fight["time"].min() > 9

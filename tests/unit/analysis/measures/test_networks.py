@@ -44,7 +44,7 @@ def test_a_network_is_described_in_numbers() -> None:
     assert describe_network(meeting_network(MET)) == pytest.approx(expected)
 
 
-def test_assortativity_agrees_with_networkx_and_chance_is_that_of_a_complete_graph() -> None:
+def test_assortativity_agrees_with_networkx() -> None:
     draws = np.random.default_rng(2)
     network = nx.gnp_random_graph(20, 0.3, seed=4)
     for robot in network:
@@ -76,7 +76,7 @@ def test_jams_are_robots_linked_at_the_same_moment() -> None:
     assert over_time["jammed"].tolist() == [0, 0, 0, 3, 0, 0, 0, 0, 0, 0]
 
 
-def test_jams_can_be_sampled_more_finely_and_later() -> None:
+def test_jams_can_be_sampled_at_shorter_intervals() -> None:
     late = MET.assign(start=MET["start"] + 3000.1)
     over_time = jams(late, every=0.1)
     jammed = over_time[over_time["jammed"] == 3]["time"]

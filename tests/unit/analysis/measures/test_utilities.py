@@ -33,7 +33,7 @@ def measured(alpha: Weights = 1.0, beta: Weights = 1.0) -> list[tuple[float, ...
     return [tuple(row) for row in robots[["u_1", "u_2", "utility", "wlu"]].to_numpy().tolist()]
 
 
-def test_utilities_worked_by_hand() -> None:
+def test_utilities_match_a_calculation_by_hand() -> None:
     # Conflict of 0, from 0 to 10 s: own 8 − 2 = 6; robot 1 has 3 s in A and 7 in P, robot 2 has 3 and 7.
     #   u_0^1 = 6, u_0^2 = 6 − 4 = 2, so u_2^1 = −2; W_0 = 3 · 6 − (3 + 3) + (2 · 3 + 3 − 7) = 14.
     # Conflict of 2, from 1 to 10 s: own 6 − 3 = 3; robot 0 has 1 s in A and 8 in P.
@@ -42,12 +42,12 @@ def test_utilities_worked_by_hand() -> None:
     assert measured() == [(6, 6, 12, 14), (-2, 0, -2, -2), (-6, 0, -6, 1)]
 
 
-def test_swarms_worked_by_hand() -> None:
+def test_swarm_utilities_match_a_calculation_by_hand() -> None:
     swarms = utilities_by_swarm(robot_utilities(table()))
     assert swarms.to_dict("list") == {"swarm": [1, 2], "utility": [10.0, -6.0], "sud": [16.0, -16.0]}
 
 
-def test_weights_by_swarm_and_opponent() -> None:
+def test_weights_can_differ_by_swarm_and_opponent() -> None:
     # Conflict of 0, S1 against S2: own 3 · 8 − 2 · 2 = 20; robot 1 within S1: α = 2, β = 1; robot 2: 7 − 3.
     #   u_0^1 = 20, u_0^2 = 16; W_0 = 3 · 20 − (2 · 3 + 3) + (2 · 3 + 3 − 7) = 53.
     # Conflict of 2: own 3; robot 0: 3 · 8 − 2 · 1 = 22. u_2^1 = −19; W_2 = 2 · 3 + (2 · 2 + 3 − 24) = −11.

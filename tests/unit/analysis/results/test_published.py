@@ -7,7 +7,7 @@ from kswarms.analysis.results.published import argos_fixed_policies, learned_per
 DENSITIES = [6, 10, 16, 20, 26, 30, 36, 40, 46, 50]
 
 
-def test_table_6_1() -> None:
+def test_table_6_1_has_the_published_numbers() -> None:
     table = table_6_1()
     assert list(table.columns) == ["n", "fig_6_4a_attack_pct", "fig_6_4b_attack_pct"]
     assert list(table["n"]) == DENSITIES
@@ -15,7 +15,7 @@ def test_table_6_1() -> None:
     assert list(table["fig_6_4b_attack_pct"]) == [1.6, 0, 1.2, 0, 3, 7.3, 26.3, 55.5, 65.2, 75.6]
 
 
-def test_table_6_2() -> None:
+def test_table_6_2_has_the_published_numbers() -> None:
     table = table_6_2()
     assert list(table.columns) == ["n", "inter_attack_pct", "intra_avoid_pct"]
     assert list(table["n"]) == DENSITIES

@@ -1,4 +1,4 @@
-"""Reading a results directory: valid tables, and each kind of invalid one."""
+"""Reading valid and invalid tables of a results directory."""
 
 from pathlib import Path
 
@@ -21,7 +21,7 @@ def runs() -> pd.DataFrame:
     return frame.assign(**{name: ["a", ""] for name in RUNS_TEXT})
 
 
-def test_a_table_is_read_with_its_further_columns(tmp_path: Path, runs: pd.DataFrame) -> None:
+def test_columns_beyond_the_schema_are_kept(tmp_path: Path, runs: pd.DataFrame) -> None:
     runs.assign(note=[0.5, 0.25]).to_parquet(tmp_path / "runs.parquet")
     read = read_runs(tmp_path)
     assert list(read["note"]) == [0.5, 0.25]
@@ -72,7 +72,7 @@ def test_a_table_without_rows_is_refused(tmp_path: Path, runs: pd.DataFrame) -> 
 
 
 @pytest.mark.parametrize("name", ["scenario", "pucks"])
-def test_a_gap_in_a_column_is_refused(tmp_path: Path, runs: pd.DataFrame, name: str) -> None:
+def test_a_missing_value_is_refused(tmp_path: Path, runs: pd.DataFrame, name: str) -> None:
     gap = runs.astype({name: object})
     gap.loc[1, name] = None
     gap.to_parquet(tmp_path / "runs.parquet")
@@ -97,7 +97,7 @@ def test_policies_are_checked_against_their_own_columns(tmp_path: Path) -> None:
             read_policies(tmp_path)
 
 
-def test_results_are_both_tables(tmp_path: Path, runs: pd.DataFrame) -> None:
+def test_results_have_runs_and_policies(tmp_path: Path, runs: pd.DataFrame) -> None:
     runs.to_parquet(tmp_path / "runs.parquet")
     assert read_results(tmp_path).policies is None
     columns = {name: ["a"] for name in POLICIES_TEXT} | {name: [1] for name in POLICIES_NUMBERS}

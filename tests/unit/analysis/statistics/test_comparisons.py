@@ -42,7 +42,7 @@ def test_a_known_effect_is_found_with_the_stated_power() -> None:
     assert is_plausible(power, found, count), (found / count, power)
 
 
-def test_a_paired_comparison_by_hand() -> None:
+def test_a_paired_comparison_matches_a_calculation_by_hand() -> None:
     first, second = np.array([3.0, 5.0, 4.0, 6.0, 8.0, 7.0]), np.array([2.0, 3.0, 3.0, 4.0, 5.0, 6.0])
     compared, differences = compare_paired(first, second), first - second
     assert compared.seeds == 6
@@ -74,7 +74,7 @@ def test_invalid_pairs_are_refused(first: list[float], second: list[float], comp
         compare_paired(first, second)
 
 
-def test_corrections_by_hand() -> None:
+def test_corrections_match_a_calculation_by_hand() -> None:
     p_values = [0.01, 0.04, 0.03, 0.5]
     assert adjust_p_values(p_values) == pytest.approx([0.04, 0.09, 0.09, 0.5])
     corrected = adjust_p_values(p_values, "benjamini-hochberg")
@@ -99,7 +99,7 @@ def test_the_additional_seeds_have_the_power(d_z: float) -> None:
     assert powers[0] < 0.8 <= powers[1]
 
 
-def test_enough_seeds_need_no_more_and_no_effect_needs_too_many() -> None:
+def test_additional_seeds_are_0_for_enough_seeds_and_none_without_effect() -> None:
     assert additional_seeds([5.0, 5.1, 4.9, 5.0]) == 0
     assert additional_seeds([5.0, 5.0]) == additional_seeds([50.0, 50.1, 49.9, 50.0], confidence=0.995) == 0
     assert additional_seeds([1.0, -1.0]) is None

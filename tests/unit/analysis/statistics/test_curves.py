@@ -37,7 +37,7 @@ def seeds_around(
         ([0, 0, 1, 2, 3], ()),  # never below
     ],
 )
-def test_crossings_of_straight_lines(curve: list[float], expected: tuple[float, ...]) -> None:
+def test_crossings_are_interpolated_linearly(curve: list[float], expected: tuple[float, ...]) -> None:
     assert crossings(DENSITIES, curve) == pytest.approx(expected)
 
 
@@ -60,21 +60,21 @@ def test_a_curve_that_is_behind_at_the_end_has_not_overtaken(curve: list[float])
     assert overtaking(DENSITIES, values).last_crossing == Interval(math.inf, math.inf, math.inf)
 
 
-def test_an_uncertain_lead_at_the_end_leaves_the_interval_open() -> None:
+def test_an_uncertain_lead_at_the_last_density_gives_an_infinite_bound() -> None:
     found = overtaking(DENSITIES, seeds_around([-9, -9, -9, -9, 0.1]))
     assert 45 < found.last_crossing.estimate < 46
     assert found.last_crossing.high == math.inf
     assert found.last_crossing.low > 44
 
 
-def test_curves_that_hardly_differ_may_have_crossed_anywhere() -> None:
+def test_similar_curves_have_an_infinite_lower_bound_of_the_crossing() -> None:
     found = overtaking(DENSITIES, seeds_around([0.1, -0.1, 0.1, -0.1, 5]))
     assert found.last_crossing.low == -math.inf
     assert 36 < found.last_crossing.high < 38
 
 
 @pytest.mark.slow
-def test_the_interval_of_a_crossing_covers_the_true_one_as_often_as_its_level() -> None:
+def test_the_interval_of_a_crossing_covers_the_true_crossing_at_its_level() -> None:
     # The line through 0 at N = 30, where the noise of the means is a fifth of the slope between densities.
     line, count = np.array([-2.4, -1.4, -0.4, 0.6, 1.6]), 200
     draws = np.random.default_rng(3)
@@ -95,7 +95,7 @@ def test_rank_correlation_is_spearmans() -> None:
     )
 
 
-def test_a_rise_has_rank_correlation_1_noise_any_value_and_a_constant_0() -> None:
+def test_rank_correlations_of_a_rise_of_noise_and_of_a_constant() -> None:
     rise = rank_correlation_with_n(DENSITIES, seeds_around([0, 10, 20, 30, 40], noise=0.1))
     assert rise == Interval(1.0, 1.0, 1.0)
     level = rank_correlation_with_n(DENSITIES, seeds_around([0.0, 0.1, 0.0, 0.1, 0.0]))

@@ -35,7 +35,7 @@ def test_the_plausibility_check_rejects_other_shares() -> None:
     ],
     ids=["normal, 8 seeds", "normal, 20 seeds", "difference of counts, 20 seeds", "exponential, 20 seeds"],
 )
-def test_an_interval_covers_the_true_mean_as_often_as_its_level(
+def test_an_interval_covers_the_true_mean_at_its_level(
     seeds: int, draw: Callable[[np.random.Generator, tuple[int, int]], Values], mean: float
 ) -> None:
     count = 400
@@ -50,7 +50,7 @@ def test_an_interval_excludes_a_distant_value() -> None:
     assert (low > 0).all()
 
 
-def test_several_intervals_are_those_of_each_sample() -> None:
+def test_intervals_of_many_means_equal_single_intervals() -> None:
     samples = np.stack([*normal_samples(4, seeds=12), np.full(12, 0.1)])
     single = [bootstrap_interval(sample) for sample in samples]
     for bounds, name in zip(intervals_of_means(samples), ("low", "high"), strict=True):
@@ -89,7 +89,7 @@ def test_percentiles_replace_bca_where_it_is_undefined() -> None:
     assert interval == Interval(1.0, 0.5, 1.5)
 
 
-def test_infinite_resamples_count() -> None:
+def test_infinite_resamples_give_infinite_bounds() -> None:
     interval = bootstrap_interval(np.arange(8.0), lambda means: np.where(means > 4.5, np.inf, means))
     assert interval.high == math.inf
     assert 0 < interval.low < 3.5

@@ -1,4 +1,4 @@
-"""Comparison of synthetic runs with ARGoS, with known answers."""
+"""Comparison of synthetic runs with ARGoS."""
 
 from collections.abc import Sequence
 
@@ -44,7 +44,7 @@ def own_form(games: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-def test_argos_agrees_with_itself_in_every_row() -> None:
+def test_argos_games_agree_with_themselves() -> None:
     frame = compare_with_argos(own_form(argos_fixed_policies()))
     assert len(frame) == 3 * 5 * 2
     assert frame["score_difference"].to_numpy() == pytest.approx(0)
@@ -53,7 +53,7 @@ def test_argos_agrees_with_itself_in_every_row() -> None:
     assert frame["share_fits"].all()
 
 
-def test_the_first_policy_is_that_of_s1() -> None:
+def test_the_first_policy_in_the_id_belongs_to_s1() -> None:
     games = argos("avoid", "attack", 36)
     frame = compare_with_argos(own_form(games)).set_index("swarm")
     assert frame["score_theirs"].to_dict() == pytest.approx({1: 34.3, 2: 28.9})
@@ -62,7 +62,7 @@ def test_the_first_policy_is_that_of_s1() -> None:
     assert frame.loc[2, "share_theirs"] == pytest.approx(expected, abs=1e-4)
 
 
-def test_the_interval_is_that_of_welch() -> None:
+def test_the_score_interval_is_welchs() -> None:
     pucks = [20, 31, 25, 28, 27, 24]
     row = only_row(runs_of(pucks))
     theirs = argos("avoid", "avoid", 16)["score1"]

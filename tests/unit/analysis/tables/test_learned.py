@@ -44,7 +44,7 @@ def test_a_cell_is_the_mean_over_the_seeds_with_its_bootstrap_interval() -> None
     assert (equal["low"], equal["measured"], equal["high"]) == (50, 50, 50)
 
 
-def test_flight_counts_within_the_own_swarm() -> None:
+def test_flight_is_counted_within_the_swarm() -> None:
     cells = learned_shares(policies({("fig-6.6", "", 2): {6: [0.0, 0.1]}}), ["fig-6.6"])
     assert list(cells["learned"]) == ["flight within"]
     assert list(cells["measured"]) == pytest.approx([95])
@@ -120,7 +120,7 @@ def test_the_table_without_published_numbers() -> None:
     assert table.caption == "percent of the learning swarm's robots; one seed"
 
 
-def test_columns_are_named_by_what_differs() -> None:
+def test_column_names_have_only_the_parts_that_differ() -> None:
     made = policies({("fig-6.8", "", 1): {6: [0.5] * 3}, ("fig-6.8", "", 2): {6: [0.0] * 2}})
     table = learned_table(learned_shares(made, ["fig-6.8"]))
     names = [heading.splitlines()[0] for heading in table.header[1:]]

@@ -7,7 +7,7 @@ from kswarms.analysis.tables.scores import scores, scores_table
 from tests.helpers.result_rows import runs_of
 
 
-def test_scores_are_the_numbers_of_the_scenarios_figure() -> None:
+def test_scores_are_the_numbers_of_the_figure() -> None:
     pucks = scores(runs_of("fig-x"), "fig-x")
     assert pucks["quantity"].unique().tolist() == ["pucks"]
     assert pucks[pucks["curve"] == "S2: attack"]["mean"].tolist() == [26, 36, 46]
