@@ -37,7 +37,7 @@ def test_a_rule_passes_every_check(check: Check) -> None:
     check(load_class("rule", "docs/examples/haste.py:EpsilonGreedy"))
 
 
-class Restless(WLU):
+class Mutable(WLU):
     """Changes itself although it is frozen."""
 
     def of(self, *conflict: Any) -> float:
@@ -57,8 +57,8 @@ class Unequal(Greedy):
 def test_a_failed_check_has_a_message() -> None:
     rewards, rules = ({check.__name__: check for check in checks} for checks in (REWARD_CHECKS, RULE_CHECKS))
     with pytest.raises(AssertionError, match="its use changes it"):
-        rewards["check_frozen"](Restless)
+        rewards["check_frozen"](Mutable)
     with pytest.raises(AssertionError, match=r"of\(.*\) differs"):
-        rewards["check_same_conflict_gives_same_reward"](Restless)
+        rewards["check_same_conflict_gives_same_reward"](Mutable)
     with pytest.raises(AssertionError, match="another is not equal"):
         rules["check_copies"](Unequal)

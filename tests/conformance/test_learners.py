@@ -1,7 +1,7 @@
 """Conformance of all policies in `POLICIES`.
 
-Checks of user-defined policies too are in `kswarms.agents.conformance`. The others are for the policies of
-the package. Learners are checked with every reward and rule. Each check takes a factory, and has a policy
+Checks that apply to user-defined policies too are in `kswarms.agents.conformance`; the others are here.
+Learners are checked with every reward and rule. Each check takes a factory. For each check, there is a policy
 that fails it.
 """
 
@@ -37,7 +37,7 @@ TEXTS = [
 ]
 
 
-def check_repr_tells_the_swarm_and_no_address(build: Factory) -> None:
+def check_repr_shows_the_swarm_and_no_address(build: Factory) -> None:
     text = repr(build(make_setting(swarm=1)))
     assert "swarm=1" in text
     assert " at 0x" not in text
@@ -46,48 +46,48 @@ def check_repr_tells_the_swarm_and_no_address(build: Factory) -> None:
 
 def check_a_frozen_learner_ignores_conflicts(build: Factory) -> None:
     """After freeze(), learn(…) changes nothing and returns NaN."""
-    for where in make_settings():
-        policy = build(where)
+    for setting in make_settings():
+        policy = build(setting)
         if not hasattr(policy, "learn"):
             continue
         assert isinstance(policy, Learner)
-        assert play_conflicts(policy, where)
+        assert play_conflicts(policy, setting)
         known = repr(policy.snapshot())
         policy.freeze()
-        told = play_conflicts(policy, where, conflicts=40)[1::2]
+        returned = play_conflicts(policy, setting, conflicts=40)[1::2]
         assert repr(policy.snapshot()) == known
-        assert all(math.isnan(number) for entry in told for number in entry)
+        assert all(math.isnan(number) for entry in returned for number in entry)
 
 
 def check_copies_look_alike(build: Factory) -> None:
-    policy = build(where := make_setting())
-    play_conflicts(policy, where, conflicts=17)
+    policy = build(setting := make_setting())
+    play_conflicts(policy, setting, conflicts=17)
     assert repr(copy.deepcopy(policy)) == repr(pickle.loads(pickle.dumps(policy))) == repr(policy)
 
 
-class Outsider:
+class ForeignAction:
     """Returns an action that is not in the game."""
 
-    def __init__(self, where: Setting) -> None:
-        self.swarm = where.swarm
+    def __init__(self, setting: Setting) -> None:
+        self.swarm = setting.swarm
 
     def choose(self, opponent: int) -> Action:
         return Action(name="hide", direction=AWAY, duration=1.0)
 
 
-class Unseeded(Outsider):
+class Unseeded(ForeignAction):
     """Draws from another source of randomness."""
 
-    def __init__(self, where: Setting) -> None:
-        super().__init__(where)
-        self.actions = where.actions
+    def __init__(self, setting: Setting) -> None:
+        super().__init__(setting)
+        self.actions = setting.actions
 
     def choose(self, opponent: int) -> Action:
         return random.choice(self.actions)
 
 
-class Hive(Unseeded):
-    """Learns from the conflicts of others."""
+class SharedState(Unseeded):
+    """Shares state among robots."""
 
     met: Final[list[int]] = []
 
@@ -107,33 +107,34 @@ class Unpicklable(Unseeded):
         return {"actions": self.actions, "swarm": self.swarm}
 
 
-class Greedy(Unseeded):
+class WrongStream(Unseeded):
     """Draws from the stream of another purpose."""
 
-    def __init__(self, where: Setting) -> None:
-        super().__init__(where)
-        self.streams = where.streams
+    def __init__(self, setting: Setting) -> None:
+        super().__init__(setting)
+        self.streams = setting.streams
 
     def choose(self, opponent: int) -> Action:
         return self.actions[self.streams.generator(Purpose.LEG).random() < 0.5]
 
 
-class Unstoppable(Learner):
+class NeverFreezes(Learner):
     """Continues to explore and learn after freeze()."""
 
-    def __init__(self, where: Setting) -> None:
-        super().__init__(where, rule="uniform-random")
+    def __init__(self, setting: Setting) -> None:
+        super().__init__(setting, rule="uniform-random")
 
     def freeze(self) -> None:
         pass
 
 
+FAULTY = (ForeignAction, Unseeded, SharedState, Unpicklable, WrongStream, NeverFreezes)
 Check = Callable[[Factory], None]
 CHECKS: Final[dict[Check, Factory]] = {
-    **dict(zip(POLICY_CHECKS, (Outsider, Unseeded, Hive, Unpicklable, Greedy, Unstoppable), strict=True)),
-    check_repr_tells_the_swarm_and_no_address: Outsider,
+    **dict(zip(POLICY_CHECKS, FAULTY, strict=True)),
+    check_repr_shows_the_swarm_and_no_address: ForeignAction,
     check_copies_look_alike: Unpicklable,
-    check_a_frozen_learner_ignores_conflicts: Unstoppable,
+    check_a_frozen_learner_ignores_conflicts: NeverFreezes,
 }
 """Each check with a policy that fails it."""
 
@@ -143,8 +144,8 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[int, str]:
     """Return files of learned policies by swarm."""
     folder, paths = tmp_path_factory.mktemp("learned"), {}
     for swarm in range(3):
-        learner = Learner(where := make_setting(swarm))
-        play_conflicts(learner, where)
+        learner = Learner(setting := make_setting(swarm))
+        play_conflicts(learner, setting)
         paths[swarm] = str(Path(folder, f"swarm-{swarm + 1}.json"))
         save_learned(Path(paths[swarm]), swarm + 1, [learner.snapshot()])
     return paths
@@ -153,8 +154,8 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[int, str]:
 @pytest.mark.parametrize("text", TEXTS)
 @pytest.mark.parametrize("check", CHECKS)
 def test_every_policy_passes_every_check(text: str, check: Check, files: dict[int, str]) -> None:
-    def build(where: Setting) -> Policy:
-        return make_policy(text.replace("{file!r}", repr(files[where.swarm])), where)
+    def build(setting: Setting) -> Policy:
+        return make_policy(text.replace("{file!r}", repr(files[setting.swarm])), setting)
 
     check(build)
 

@@ -1,7 +1,7 @@
 """Conformance of all rewards in `REWARDS`.
 
-Checks of user-defined rewards too are in `kswarms.agents.conformance`. The others are for the rewards of the
-package. Each check takes a class, and has a reward that fails it.
+Checks that apply to user-defined rewards too are in `kswarms.agents.conformance`; the others are here. Each
+check takes a class. For each check, there is a reward that fails it.
 """
 
 import math
@@ -48,7 +48,7 @@ def check_rewards_are_linear_in_active_sensors(reward: type[Reward]) -> None:
         assert reward().of(t_a, t_p, n_active, *rest) == pytest.approx(expected, abs=1e-9)
 
 
-class Moody(IndividualUtility):
+class Unequal(IndividualUtility):
     """Equals only itself."""
 
     def __eq__(self, other: object) -> bool:
@@ -57,33 +57,33 @@ class Moody(IndividualUtility):
     __hash__ = IndividualUtility.__hash__
 
 
-class Thawed(IndividualUtility):
+class Mutable(IndividualUtility):
     """Is not frozen."""
 
     model_config = {"frozen": False}
 
 
-class Lenient(WLU):
+class AnyArgument(WLU):
     """Accepts any argument."""
 
     model_config = {"extra": "ignore"}
 
 
-class Unchecked(WLU):
+class AcceptsNaN(WLU):
     """Accepts NaN and infinities."""
 
     model_config = {"allow_inf_nan": True}
     bonus: float = 0.0
 
 
-class Whole(WLU):
+class ReturnsNaN(WLU):
     """Returns NaN."""
 
     def of(self, *conflict: Any) -> float:
         return 1 if conflict[1] else math.nan
 
 
-class Tired(WLU):
+class Stateful(WLU):
     """Returns less each time."""
 
     given: list[float] = Field(default_factory=list)
@@ -93,21 +93,21 @@ class Tired(WLU):
         return super().of(*conflict) / len(self.given)
 
 
-class Hurried(WLU):
+class DecreasingInProgramTime(WLU):
     """Decreases with program time."""
 
     def of(self, t_a: float, t_p: float, *rest: Any) -> float:
         return super().of(t_a, -t_p, *rest)
 
 
-class Flat(WLU):
+class WithBonus(WLU):
     """Adds a bonus of 1 for each conflict, however short."""
 
     def of(self, *conflict: Any) -> float:
         return super().of(*conflict) + 1.0
 
 
-class Steep(WLU):
+class QuadraticInSensors(WLU):
     """Is quadratic in n'."""
 
     def of(self, t_a: float, t_p: float, n_active: int, *rest: Any) -> float:
@@ -116,11 +116,11 @@ class Steep(WLU):
 
 Check = Callable[[Any], None]
 CHECKS: Final[dict[Check, type[Reward]]] = {
-    check_numbers_are_checked: Unchecked,
-    **dict(zip(REWARD_CHECKS, (Moody, Thawed, Lenient, Whole, Tired), strict=True)),
-    check_program_time_increases_the_reward: Hurried,
-    check_it_is_in_seconds: Flat,
-    check_rewards_are_linear_in_active_sensors: Steep,
+    check_numbers_are_checked: AcceptsNaN,
+    **dict(zip(REWARD_CHECKS, (Unequal, Mutable, AnyArgument, ReturnsNaN, Stateful), strict=True)),
+    check_program_time_increases_the_reward: DecreasingInProgramTime,
+    check_it_is_in_seconds: WithBonus,
+    check_rewards_are_linear_in_active_sensors: QuadraticInSensors,
 }
 """Each check with a reward that fails it."""
 

@@ -1,7 +1,7 @@
 """Conformance of all selection rules in `RULES`.
 
-Checks of user-defined rules too are in `kswarms.agents.conformance`. The others are for the rules of the
-package. Each check takes a class, and has a rule that fails it.
+Checks that apply to user-defined rules too are in `kswarms.agents.conformance`; the others are here. Each
+check takes a class. For each check, there is a rule that fails it.
 """
 
 import random
@@ -22,7 +22,7 @@ IGNORES_UNTRIED_ARMS: Final = {"uniform-random"}
 
 
 def tried(values: list[float]) -> Bandit:
-    """Return a bandit that tried every arm equally often, with these values of Q."""
+    """Return a bandit in which all arms have the same count and these values of Q."""
     bandit = Bandit(len(values))
     for arm, value in enumerate(values):
         for _ in range(8):
@@ -51,7 +51,7 @@ def check_ties_are_broken_by_the_robots_stream(rule: type[Rule]) -> None:
         assert [rule().choose(tried([0.5] * arms), exploration_rng(seed)) for seed in range(200)] == by_stream
 
 
-class Moody(Greedy):
+class Unequal(Greedy):
     """Equals only itself."""
 
     def __eq__(self, other: object) -> bool:
@@ -60,7 +60,7 @@ class Moody(Greedy):
     __hash__ = Greedy.__hash__
 
 
-class Thawed(UCB):
+class Mutable(UCB):
     """Is not frozen and changes itself."""
 
     model_config = {"frozen": False}
@@ -70,7 +70,7 @@ class Thawed(UCB):
         return super().prefer(bandit, rng)
 
 
-class Lenient(Greedy):
+class AnyArgument(Greedy):
     """Accepts any argument."""
 
     model_config = {"extra": "ignore"}
@@ -83,28 +83,28 @@ class Unseeded(Greedy):
         return random.randrange(len(bandit.count))
 
 
-class OneTooFar(UniformRandom):
+class ArmsFromOne(UniformRandom):
     """Counts arms from 1."""
 
     def choose(self, bandit: Bandit, rng: Generator) -> int:
         return 1 + super().choose(bandit, rng)
 
 
-class First(Greedy):
+class AlwaysFirst(Greedy):
     """Always chooses the first arm."""
 
     def choose(self, bandit: Bandit, rng: Generator) -> int:
         return 0
 
 
-class FirstOfEquals(Rule):
+class TiesToFirst(Rule):
     """Greedy without random ties."""
 
     def prefer(self, bandit: Bandit, rng: Generator) -> int:
         return bandit.best() or 0
 
 
-class Meddler(Greedy):
+class ChangesBandit(Greedy):
     """Changes the bandit."""
 
     def choose(self, bandit: Bandit, rng: Generator) -> int:
@@ -113,7 +113,7 @@ class Meddler(Greedy):
         return arm
 
 
-class Inflating(Greedy):
+class InvalidFactor(Greedy):
     """Has a discount factor above 1."""
 
     @property
@@ -123,10 +123,10 @@ class Inflating(Greedy):
 
 Check = Callable[[Any], None]
 CHECKS: Final[dict[Check, type[Rule]]] = {
-    check_every_arm_is_reachable: First,
+    check_every_arm_is_reachable: AlwaysFirst,
     check_untried_arms_come_first: UniformRandom,
-    check_ties_are_broken_by_the_robots_stream: FirstOfEquals,
-    **dict(zip(RULE_CHECKS, (Moody, Thawed, Lenient, Unseeded, OneTooFar), strict=True)),
+    check_ties_are_broken_by_the_robots_stream: TiesToFirst,
+    **dict(zip(RULE_CHECKS, (Unequal, Mutable, AnyArgument, Unseeded, ArmsFromOne), strict=True)),
 }
 """Each check with a rule that fails it."""
 
@@ -140,7 +140,7 @@ def test_every_rule_passes_every_check(name: str, check: Check) -> None:
 
 
 @pytest.mark.parametrize(
-    ("check", "bad"), [*CHECKS.items(), (RULE_CHECKS[-1], Meddler), (RULE_CHECKS[-1], Inflating)]
+    ("check", "bad"), [*CHECKS.items(), (RULE_CHECKS[-1], ChangesBandit), (RULE_CHECKS[-1], InvalidFactor)]
 )
 def test_every_check_refuses_a_bad_rule(check: Check, bad: type[Rule]) -> None:
     with pytest.raises((AssertionError, InputError, pytest.fail.Exception)):

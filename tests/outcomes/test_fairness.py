@@ -54,20 +54,20 @@ def test_the_interval_detects_a_difference() -> None:
     assert not may_be_zero(noise - noise.mean() + 0.5)
 
 
-def lead(game: Game, seeds: int) -> list[int]:
-    """Return the pucks of S1 less those of S2, for each seed."""
+def score_differences(game: Game, seeds: int) -> list[int]:
+    """Return the pucks of S1 minus those of S2, for each seed."""
     return [model.pucks[0] - model.pucks[1] for model in (play(game, seed) for seed in range(seeds))]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("policies", ["avoid,avoid", "attack,attack", "mixed,mixed"])
 def test_equal_swarms_score_alike(policies: str) -> None:
-    assert may_be_zero(lead(make_game(policies, 20, duration=400.0), 60))
+    assert may_be_zero(score_differences(make_game(policies, 20, duration=400.0), 60))
 
 
 @pytest.mark.slow
 def test_a_faster_swarm_scores_more() -> None:
-    assert not may_be_zero(lead(make_game("avoid,avoid", 20, duration=400.0, drive=0.7), 240))
+    assert not may_be_zero(score_differences(make_game("avoid,avoid", 20, duration=400.0, drive=0.7), 240))
 
 
 @pytest.mark.slow
@@ -127,20 +127,20 @@ class Exchange:
         return math.atan2(self.signs[1] * math.sin(heading), self.signs[0] * math.cos(heading))
 
 
-class Exchanged:
+class ExchangedStream:
     """Random stream of a robot's twin, with mirrored draws."""
 
-    def __init__(self, exchange: Exchange, draws: Generator, purpose: Purpose) -> None:
-        self._exchange, self._draws, self._purpose = exchange, draws, purpose
+    def __init__(self, exchange: Exchange, generator: Generator, purpose: Purpose) -> None:
+        self._exchange, self._generator, self._purpose = exchange, generator, purpose
 
     def exponential(self, mean: float) -> float:
-        return self._draws.exponential(mean)
+        return self._generator.exponential(mean)
 
     def random(self) -> float:
-        return self._draws.random()
+        return self._generator.random()
 
     def uniform(self, low: float, high: float) -> float:
-        drawn = self._draws.uniform(low, high)
+        drawn = self._generator.uniform(low, high)
         if self._purpose == Purpose.WALL:  # a heading
             return self._exchange.heading(drawn)
         assert self._purpose == Purpose.WANDER
@@ -148,11 +148,11 @@ class Exchanged:
 
 
 def exchange_draws(model: GameModel, exchange: Exchange, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Give all robots the random draws of their twins."""
+    """Give all robots the random streams of their twins."""
     n = model.game.size
 
-    def exchanged_stream(seed: int, robot: int, purpose: Purpose) -> Exchanged:
-        return Exchanged(exchange, stream(seed, exchange.twins(robot, n), purpose), purpose)
+    def exchanged_stream(seed: int, robot: int, purpose: Purpose) -> ExchangedStream:
+        return ExchangedStream(exchange, stream(seed, exchange.twins(robot, n), purpose), purpose)
 
     monkeypatch.setattr("kswarms.agents.streams.stream", exchanged_stream)
     if exchange.is_reflection:

@@ -166,7 +166,7 @@ def test_a_wedge_gives_way_a_little(turn: float, aside: float) -> None:
     # Half a radius in all is enough.
     assert moved[0, 1] - moved[1, 1] == pytest.approx(0.5 * R, abs=0.01 * R)
     # Relaxation without momentum gives the same displacements.
-    plain = Ground(R, game.side / 2, game.parameters.friction, 0.0, most_momentum=0.0)
+    plain = Ground(R, game.side / 2, game.parameters.friction, 0.0, max_momentum=0.0)
     slow = positions.copy()
     for _ in range(60):
         translate(slow, STRIDE * np.array(((0, 0), (0, 0), unit(turn))), plain)
@@ -187,7 +187,7 @@ def test_a_straight_row_from_wall_to_wall_gives_way(turn: float, across: float) 
     assert np.abs(scene.states.positions).max() <= 1 - R + EXACT
 
 
-def test_bodies_that_cannot_be_parted_are_an_error() -> None:
+def test_bodies_that_cannot_be_separated_are_an_error() -> None:
     # A hundred bodies with a radius for which they would cover more than the arena.
     side = np.linspace(R - 1, 1 - R, 10)
     scene = make_scene(game_of(100), np.array([(x, y) for x in side for y in side]), 0.0, STRIDE)

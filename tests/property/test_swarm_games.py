@@ -78,8 +78,8 @@ class Meetings(NamedTuple):
 
 
 @st.composite
-def meetings(draw: st.DrawFn, most_swarms: int = 4) -> Meetings:
-    k = draw(st.integers(2, most_swarms))
+def meetings(draw: st.DrawFn, max_swarms: int = 4) -> Meetings:
+    k = draw(st.integers(2, max_swarms))
     extra = draw(st.lists(st.integers(0, k - 1), min_size=1, max_size=3))
     swarm_of = [*range(k), *extra]
     n = len(swarm_of)
@@ -102,7 +102,7 @@ utilities_of_two = st.tuples(st.floats(-600, 600), st.floats(-600, 600))
 
 
 @given(totals)
-def test_differences_sum_to_two_less_k_times_the_utilities(utilities: list[int]) -> None:
+def test_differences_sum_to_two_minus_k_times_the_utilities(utilities: list[int]) -> None:
     differences = [swarm_utility_difference(utilities, k) for k in range(len(utilities))]
     assert sum(differences) == sum_of_differences(utilities) == (2 - len(utilities)) * sum(utilities)
     assert is_zero_sum_difference([utilities]) == (sum(differences) == 0)
@@ -176,7 +176,7 @@ def test_a_unilateral_change_has_the_same_effect_on_wlu_and_sud(
     assert game.wlu(other, player) - game.wlu(profile, player) == change
 
 
-@given(meetings(most_swarms=2), profiles)
+@given(meetings(max_swarms=2), profiles)
 def test_sud_is_a_potential_of_wlu_but_not_of_the_own_utility(game: Meetings, profile: list[int]) -> None:
     members = [i for i, swarm in enumerate(game.swarm_of) if swarm == 0]
     shape = (ACTIONS,) * len(members)

@@ -112,7 +112,9 @@ met = st.tuples(st.integers(0, 8), st.integers(0, 8)).filter(any)
 
 
 @given(met, seconds, seconds, weights, weights)
-def test_identical_swarms(n: tuple[int, int], t_a: float, t_p: float, alpha: float, beta: float) -> None:
+def test_identical_swarms_wlu(
+    n: tuple[int, int], t_a: float, t_p: float, alpha: float, beta: float
+) -> None:
     crowd = Crowd(*n, alpha, beta, alpha, beta, alpha, beta)
     exact = identical_swarms_wlu(*n, t_a, t_p, alpha, beta)
     assert exact == near(times.wlu_per_robot_met(crowd, t_a, t_p) / beta, 1e5)
@@ -120,7 +122,7 @@ def test_identical_swarms(n: tuple[int, int], t_a: float, t_p: float, alpha: flo
 
 
 @given(met, weights, weights, st.floats(0.1, 2.9))
-def test_the_opponents_advantage(n: tuple[int, int], alpha: float, beta: float, b: float) -> None:
+def test_the_program_weight(n: tuple[int, int], alpha: float, beta: float, b: float) -> None:
     crowd = Crowd(*n, alpha, beta, alpha, beta, alpha, beta_m=b * beta)
     exact = program_weight(*n, b)
     assert exact == near(times.gamma(crowd) / (sum(n) * beta), 100)

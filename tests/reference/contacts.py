@@ -29,7 +29,7 @@ class Ground(NamedTuple):
     half: float
     friction: float
     push_share: float
-    most_momentum: float = 0.8  # maximum fraction of a body's last correction that is added to the next
+    max_momentum: float = 0.8  # maximum fraction of a body's last correction that is added to the next
 
 
 class Contact(NamedTuple):
@@ -101,7 +101,7 @@ def slide(want: Floats, contacts: list[Contact], friction: float) -> Floats:
 
 
 def relax(positions: Floats, ground: Ground) -> None:
-    """Part all overlapping bodies together by equal shares until no overlap exceeds the tolerance.
+    """Separate all overlapping bodies at once by equal shares, until no overlap exceeds the tolerance.
 
     A round ends when the overlaps of the watched pairs are small; the next round considers all pairs.
     """
@@ -132,7 +132,7 @@ def relax(positions: Floats, ground: Ground) -> None:
 
 def _momentum(passes: int, ground: Ground) -> float:
     since = passes - PLAIN_PASSES
-    return min(ground.most_momentum, (since + 1) / (since + 7)) if since >= 0 else 0.0
+    return min(ground.max_momentum, (since + 1) / (since + 7)) if since >= 0 else 0.0
 
 
 def _overlaps(positions: Floats, ground: Ground) -> Floats:

@@ -1,4 +1,4 @@
-"""Games from numbers and texts: the arguments reach the game, and bad ones are refused in one line."""
+"""Games from numbers and texts: arguments of the game, and errors."""
 
 import math
 from typing import Any
@@ -96,7 +96,7 @@ def test_numpy_numbers_are_accepted() -> None:
         ({"robots": 3}, "robots=3: unknown field; allowed: layout, stations, "),
     ],
 )
-def test_bad_input_is_one_line_with_field_value_and_what_is_allowed(
+def test_errors_name_field_value_and_rule(
     arguments: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(InputError) as refusal:

@@ -58,7 +58,7 @@ def test_robots_without_room_are_refused() -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_crowd_without_free_places_is_parted(seed: int) -> None:
+def test_overlaps_in_a_crowd_are_relaxed(seed: int) -> None:
     positions, _ = start_poses(80, seed, 1.0, RADIUS, CLEARANCE, WALL_CLEARANCE)
     assert pdist(positions).min() >= 2 * RADIUS + CLEARANCE
     assert np.abs(positions).max() <= 1.0 - RADIUS - WALL_CLEARANCE + 1e-12

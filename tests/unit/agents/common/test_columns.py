@@ -3,7 +3,7 @@
 from kswarms.agents.common.columns import ARM, TABLES, column_names, data_dictionary
 
 
-def test_names_can_be_selected_by_kind() -> None:
+def test_column_names_can_be_selected_by_kind() -> None:
     assert column_names("robots") == ("run", "robot", "swarm", "policy", "pucks", "t_a", "t_p", "arms")
     assert column_names("robots", "text", "real") == ("run", "policy", "t_a", "t_p")
 

@@ -58,7 +58,7 @@ def test_a_nested_field_has_a_dotted_name(values: dict[str, Any], message: str) 
     assert "\n" not in str(refusal.value)
 
 
-def test_descriptions_are_immutable_values() -> None:
+def test_models_are_immutable_values() -> None:
     flight = Action(name="flight", direction=AWAY, duration=1.0)
     assert flight == Action(name="flight", direction=AWAY, duration=1.0)
     assert hash(flight) == hash(flight.replace())

@@ -51,7 +51,7 @@ def test_an_untried_arm_has_no_value_and_is_not_the_best() -> None:
     assert bandit.best() is None
     assert math.isnan(bandit.value(1))
     bandit.update(1, -5.0, 10.0)
-    assert bandit.best() == 1  # negative, and yet the best of those that were tried
+    assert bandit.best() == 1  # negative, but the best of the tried arms
     bandit.update(2, -1.0, 10.0)
     assert bandit.best() == 2
 

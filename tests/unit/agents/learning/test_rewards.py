@@ -28,7 +28,7 @@ def of(
 
 
 @pytest.mark.parametrize(("case", "sign"), SIGNS.items())
-def test_signs(case: tuple[bool, int], sign: int) -> None:
+def test_the_sign_of_equation_5_5(case: tuple[bool, int], sign: int) -> None:
     assert sigma(*case) == sign
 
 
@@ -102,7 +102,7 @@ def test_individual_utility_with_the_constant_half(
 
 
 @pytest.mark.parametrize("direction", [TOWARDS, AWAY])
-def test_single_swarm(direction: int) -> None:
+def test_wlu_of_a_single_swarm(direction: int) -> None:
     # 4/8 · (5 − 3 · 2), whatever the action
     assert of(SingleSwarmWLU(), 2.0, 5.0, 4, direction, inter=False) == -0.5
     assert SingleSwarmWLU() == SingleSwarmWLU(kappa=3.0)

@@ -28,15 +28,15 @@ SURE = 1e-4
 """Significance level of the statistical tests."""
 
 
-class Draws:
-    """A stream that counts its draws."""
+class CountingGenerator:
+    """A random generator that returns one value and counts the calls."""
 
     def __init__(self, value: float = 0.0) -> None:
         self.value = value
-        self.drawn = 0
+        self.calls = 0
 
     def random(self) -> float:
-        self.drawn += 1
+        self.calls += 1
         return self.value
 
 
@@ -49,28 +49,28 @@ def bandit(*arms: tuple[float, float], time: float = 10.0) -> Bandit:
     return known
 
 
-def chosen(rule: Rule, known: Bandit, draws: Draws | None = None) -> int:
-    return rule.choose(known, draws or Draws())  # type: ignore[arg-type]
+def choose(rule: Rule, known: Bandit, rng: CountingGenerator | None = None) -> int:
+    return rule.choose(known, rng or CountingGenerator())  # type: ignore[arg-type]
 
 
-def as_equals(rule: Rule, known: Bandit) -> set[int]:
-    """Return the arms that a rule considers equal."""
-    return {chosen(rule, known, Draws(k / 100)) for k in range(100)}
+def tied_arms(rule: Rule, known: Bandit) -> set[int]:
+    """Return the arms among which a rule chooses at random."""
+    return {choose(rule, known, CountingGenerator(k / 100)) for k in range(100)}
 
 
 def test_ucb_equals_values_computed_by_hand() -> None:
     # N = 3 + 1, ln 4 = 1.38629, γ ln N = 0.155 · 1.38629 = 0.214876.
     # Bonuses: sqrt(0.214876 / 3) = 0.267629, sqrt(0.214876 / 1) = 0.463547, difference 0.195918.
     rule = UCB(gamma=0.155)
-    assert chosen(rule, bandit((0.5, 3), (0.3040, 1))) == 0  # 0.767629 > 0.767547
-    assert chosen(rule, bandit((0.5, 3), (0.3042, 1))) == 1  # 0.767629 < 0.767747
+    assert choose(rule, bandit((0.5, 3), (0.3040, 1))) == 0  # 0.767629 > 0.767547
+    assert choose(rule, bandit((0.5, 3), (0.3042, 1))) == 1  # 0.767629 < 0.767747
 
 
 def test_ucb_with_three_arms_equals_values_computed_by_hand() -> None:
     # N = 1 + 2 + 5 = 8, γ ln N = 1 · 2.079442. Bonuses 1.442027, 1.019667, 0.644894.
-    assert chosen(UCB(gamma=1), bandit((0.0, 1), (0.42, 2), (0.797, 5))) == 0  # 1.4420 1.4397 1.4419
-    assert chosen(UCB(gamma=1), bandit((0.0, 1), (0.43, 2), (0.797, 5))) == 1  # 1.4420 1.4497 1.4419
-    assert chosen(UCB(gamma=1), bandit((0.0, 1), (0.42, 2), (0.798, 5))) == 2  # 1.4420 1.4397 1.4429
+    assert choose(UCB(gamma=1), bandit((0.0, 1), (0.42, 2), (0.797, 5))) == 0  # 1.4420 1.4397 1.4419
+    assert choose(UCB(gamma=1), bandit((0.0, 1), (0.43, 2), (0.797, 5))) == 1  # 1.4420 1.4497 1.4419
+    assert choose(UCB(gamma=1), bandit((0.0, 1), (0.42, 2), (0.798, 5))) == 2  # 1.4420 1.4397 1.4429
 
 
 ARMS = st.lists(st.tuples(st.floats(-1, 1), st.integers(1, 500)), min_size=2, max_size=6)
@@ -80,7 +80,7 @@ ARMS = st.lists(st.tuples(st.floats(-1, 1), st.integers(1, 500)), min_size=2, ma
 def test_ucb_chooses_the_greatest_bound(arms: list[tuple[float, int]], gamma: float) -> None:
     n = sum(count for _, count in arms)
     bounds = [q + math.sqrt(gamma * math.log(n) / count) for q, count in arms]
-    arm = chosen(UCB(gamma=gamma), bandit(*arms))
+    arm = choose(UCB(gamma=gamma), bandit(*arms))
     assert bounds[arm] >= max(bounds) - 1e-9
 
 
@@ -88,34 +88,34 @@ def test_ucb_chooses_the_greatest_bound(arms: list[tuple[float, int]], gamma: fl
 def test_greedy_and_ucb_without_exploration_choose_the_greatest_value(arms: list[tuple[float, int]]) -> None:
     known = bandit(*arms)
     for rule in (Greedy(), UCB(gamma=0)):
-        assert known.value(chosen(rule, known)) == max(known.value(arm) for arm in range(len(arms)))
+        assert known.value(choose(rule, known)) == max(known.value(arm) for arm in range(len(arms)))
 
 
 def test_only_ties_are_broken_by_a_draw() -> None:
-    draws = Draws()
+    rng = CountingGenerator()
     for rule in (UCB(), DiscountedUCB(), Greedy(), PeriodicRandom()):
-        assert as_equals(rule, bandit((0.5, 4), (0.25, 4), (0.5, 4))) == {0, 2}
-        chosen(rule, bandit((0.5, 4), (0.25, 4)), draws)
-    assert draws.drawn == 0
+        assert tied_arms(rule, bandit((0.5, 4), (0.25, 4), (0.5, 4))) == {0, 2}
+        choose(rule, bandit((0.5, 4), (0.25, 4)), rng)
+    assert rng.calls == 0
 
 
 @pytest.mark.parametrize("rule", FIRST_UNTRIED, ids=repr)
 def test_untried_arms_come_first(rule: Rule) -> None:
     known = bandit((1.0, 1000), (0.0, 0), (-1.0, 1000), (0.0, 0))
-    assert as_equals(rule, known) == {1, 3}
+    assert tied_arms(rule, known) == {1, 3}
     known.update(3, -5.0, 1.0)
-    assert as_equals(rule, known) == {1}
-    known.choices = 4  # not even the one choice in five that is random
-    assert as_equals(rule, known) == {1}
+    assert tied_arms(rule, known) == {1}
+    known.choices = 4  # the next choice of periodic-random would be random
+    assert tied_arms(rule, known) == {1}
 
 
 @pytest.mark.parametrize("rule", FIRST_UNTRIED, ids=repr)
 def test_the_order_of_untried_arms_is_random(rule: Rule) -> None:
     orders: Counter[tuple[int, ...]] = Counter()
     for seed in range(600):
-        known, draws, order = Bandit(3), stream(seed, 0, Purpose.EXPLORE), []
+        known, rng, order = Bandit(3), stream(seed, 0, Purpose.EXPLORE), []
         for _ in range(3):
-            order.append(rule.choose(known, draws))
+            order.append(rule.choose(known, rng))
             known.choices += 1
             known.update(order[-1], 1.0, 2.0, rule.factor)
         orders[tuple(order)] += 1
@@ -125,27 +125,27 @@ def test_the_order_of_untried_arms_is_random(rule: Rule) -> None:
 
 @pytest.mark.parametrize("every", [5, 20, 1, 7])
 def test_periodic_random_draws_every_nth_choice(every: int) -> None:
-    rule, draws, known = PeriodicRandom(every=every), Draws(), Bandit(2)
+    rule, rng, known = PeriodicRandom(every=every), CountingGenerator(), Bandit(2)
     drawn_at = []
     for choice in range(1, 101):
-        before = draws.drawn
-        arm = chosen(rule, known, draws)
+        before = rng.calls
+        arm = choose(rule, known, rng)
         known.choices += 1
         known.update(arm, [1.0, 2.0][arm], 4.0)
-        if choice > 2:  # the first two are those that were never tried
-            if draws.drawn > before:
+        if choice > 2:  # the first two choices are untried arms
+            if rng.calls > before:
                 drawn_at.append(choice)
-            assert arm == (0 if draws.drawn > before else 1)  # 0 is what is drawn, 1 what is best
+            assert arm == (0 if rng.calls > before else 1)  # the random arm is 0, the best arm 1
     assert drawn_at == [choice for choice in range(3, 101) if choice % every == 0]
 
 
 def test_periodic_random_draws_arms_uniformly() -> None:
-    known, draws = bandit((0.1, 9), (0.9, 9), (0.2, 9)), stream(1, 2, Purpose.EXPLORE)
+    known, rng = bandit((0.1, 9), (0.9, 9), (0.2, 9)), stream(1, 2, Purpose.EXPLORE)
     known.choices = 4
-    counts = Counter(PeriodicRandom().choose(known, draws) for _ in range(3000))
+    counts = Counter(PeriodicRandom().choose(known, rng) for _ in range(3000))
     assert chisquare([counts[arm] for arm in range(3)]).pvalue > SURE
     known.choices = 5
-    assert {PeriodicRandom().choose(known, draws) for _ in range(100)} == {1}
+    assert {PeriodicRandom().choose(known, rng) for _ in range(100)} == {1}
 
 
 @pytest.mark.parametrize(
@@ -154,21 +154,21 @@ def test_periodic_random_draws_arms_uniformly() -> None:
     ids=["nothing known", "one far better", "one tried"],
 )
 def test_uniform_random_draws_arms_uniformly(known: Bandit) -> None:
-    draws = stream(7, 3, Purpose.EXPLORE)
-    counts = Counter(UniformRandom().choose(known, draws) for _ in range(4000))
+    rng = stream(7, 3, Purpose.EXPLORE)
+    counts = Counter(UniformRandom().choose(known, rng) for _ in range(4000))
     assert chisquare([counts[arm] for arm in range(4)]).pvalue > SURE
 
 
 def test_uniform_random_choices_are_independent() -> None:
-    draws, known = stream(7, 3, Purpose.EXPLORE), Bandit(2)
-    arms = [UniformRandom().choose(known, draws) for _ in range(4001)]
+    rng, known = stream(7, 3, Purpose.EXPLORE), Bandit(2)
+    arms = [UniformRandom().choose(known, rng) for _ in range(4001)]
     pairs = Counter(pairwise(arms))
     assert chisquare([pairs[pair] for pair in product((0, 1), repeat=2)]).pvalue > SURE
 
 
 def test_the_test_of_uniformity_can_fail() -> None:
-    draws = np.random.default_rng(5)
-    counts = Counter(int(draws.random() < 0.55) for _ in range(4000))
+    rng = np.random.default_rng(5)
+    counts = Counter(int(rng.random() < 0.55) for _ in range(4000))
     assert chisquare([counts[arm] for arm in range(2)]).pvalue < SURE
 
 
@@ -180,9 +180,9 @@ def test_discounted_ucb_equals_its_definition_over_the_whole_history(discount: f
     arms: list[int] = []
     rewards: list[float] = []
     times: list[float] = []
-    draws = stream(0, 0, Purpose.EXPLORE)
+    rng = stream(0, 0, Purpose.EXPLORE)
     for t in range(400):
-        arm = rule.choose(known, draws)
+        arm = rule.choose(known, rng)
         if t >= 3:
             weight = discount ** np.arange(t - 1, -1, -1.0)
             of_arm = [weight * (np.array(arms) == a) for a in range(3)]
@@ -210,8 +210,8 @@ def test_defaults_are_the_fitted_values() -> None:
 @pytest.mark.parametrize(("discount", "gamma"), [(0.5, 0.0), (0.9, 0.0), (1e-3, 0.155)])
 def test_discounted_ucb_retries_an_arm_with_a_tiny_count(discount: float, gamma: float) -> None:
     rule, known = DiscountedUCB(discount=discount, gamma=gamma), Bandit(2)
-    for _ in range(8000):  # discounted so often, the weight of an arm falls below the smallest number
-        arm = chosen(rule, known)
+    for _ in range(8000):  # after so many discounts, the count of an arm underflows
+        arm = choose(rule, known)
         known.update(arm, [0.0, 1.0][arm], [0.1, 2.0][arm], rule.factor)
 
 

@@ -1,4 +1,4 @@
-"""Changes of the texts of policies."""
+"""Editing of policy texts."""
 
 from kswarms.agents.policies.editing import with_learning
 from kswarms.agents.user_code.syntax import parse_call

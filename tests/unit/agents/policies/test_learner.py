@@ -17,8 +17,8 @@ from kswarms.agents.policies.spec import make_policy
 FLIGHT, FIGHT = TWO_ACTIONS
 
 
-def learner(text: str = "learner", **where: Any) -> Learner:
-    policy = make_policy(text, make_setting(**where))
+def learner(text: str = "learner", **fields: Any) -> Learner:
+    policy = make_policy(text, make_setting(**fields))
     assert isinstance(policy, Learner)
     return policy
 

@@ -9,8 +9,8 @@ from kswarms.model.foraging import ForagingModel
 
 SETTING = make_setting()
 
-# Policy, field, how the value looks, a part of what is allowed.
-WRONG = [
+# Policy, field, repr of the value, part of the rule.
+INVALID = [
     ("lerner", "policy", "'lerner'", "inter-learner"),
     ("", "policy", "''", "at least 1 character"),
     ("learner(", "policy", "'learner('", "name(key=value, …)"),
@@ -32,8 +32,8 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("text", "field", "value", "allowed"), WRONG, ids=[row[0] for row in WRONG])
-def test_the_line_names_field_value_and_what_is_allowed(
+@pytest.mark.parametrize(("text", "field", "value", "allowed"), INVALID, ids=[row[0] for row in INVALID])
+def test_errors_name_field_value_and_rule(
     text: str, field: str, value: str, allowed: str
 ) -> None:
     with pytest.raises(InputError) as caught:

@@ -12,8 +12,8 @@ from kswarms.model.game_model import GameModel
 
 Scene = Callable[..., GameModel]
 
-AWAY_FROM_IT = [(0.25, 0.05, 0.0)]
-"""A robot ahead of one at the origin that heads along x, and facing away from it."""
+FACING_AWAY = [(0.25, 0.05, 0.0)]
+"""Pose of a robot ahead of a robot at the origin that heads along x; it faces away from that robot."""
 
 STEP = 2.96 * 0.1
 """Maximum turn in a period (rad)."""
@@ -35,7 +35,7 @@ def conflicts(model: GameModel, robot: int = 0) -> list[dict[str, Any]]:
 
 
 def test_a_fight_turns_to_the_bearing_and_drives(scene: Scene) -> None:
-    model = scene([(0.0, 0.0, -0.6)], AWAY_FROM_IT, policies="attack,avoid", record="conflicts")
+    model = scene([(0.0, 0.0, -0.6)], FACING_AWAY, policies="attack,avoid", record="conflicts")
     bearing = math.atan2(0.05, 0.25)
     turn = math.ceil((bearing + 0.6) / STEP)
     model.env.run(until=turn + 1)
@@ -62,7 +62,7 @@ def test_a_flight_turns_to_the_most_vacant_direction(scene: Scene) -> None:
     assert model.robots[0].t_a == [0, turn + 17]
 
 
-def test_a_conflict_is_logged_as_at_its_start(scene: Scene) -> None:
+def test_a_logged_conflict_has_the_state_at_its_start(scene: Scene) -> None:
     # Four robots within the active range of 0.30 m and one within the flight range, no wall.
     ring = [(0.3 * math.cos(a), 0.3 * math.sin(a), a) for a in (0.0, 0.8, 1.6, 2.4, 3.2)]
     model = scene([(0.0, 0.1, 0.0)], [(x, y + 0.1, a) for x, y, a in ring], record="conflicts", duration=30.0)
@@ -122,7 +122,7 @@ def test_a_near_robot_ahead_starts_a_conflict(
     model.env.run(until=1)
     assert (model.robots[0].state == "A") == met
     assert model.robots[0].conflicts == [0, int(met)]
-    assert model.robots[1].state == "P"  # it sees nobody
+    assert model.robots[1].state == "P"  # it detects no robot
 
 
 def test_the_next_conflict_starts_at_once_if_its_condition_holds(scene: Scene) -> None:
@@ -141,7 +141,7 @@ def test_the_next_conflict_starts_at_once_if_its_condition_holds(scene: Scene) -
 
 
 def test_program_time_is_between_action_and_next_conflict(scene: Scene) -> None:
-    model = scene([(0.0, 0.0, 0.0)], AWAY_FROM_IT, record="conflicts", duration=120.0)
+    model = scene([(0.0, 0.0, 0.0)], FACING_AWAY, record="conflicts", duration=120.0)
     model.env.run()
     for robot in model.robots:
         log = conflicts(model, robot.index)
@@ -190,7 +190,7 @@ def test_the_end_of_an_interrupted_turn_has_no_effect(scene: Scene) -> None:
 
 
 def test_the_same_robot_does_not_interrupt(scene: Scene) -> None:
-    model = scene([(0.0, 0.0, 0.0)], AWAY_FROM_IT, policies="attack,avoid", changes={"preempt": True})
+    model = scene([(0.0, 0.0, 0.0)], FACING_AWAY, policies="attack,avoid", changes={"preempt": True})
     model.env.run(until=10)
     assert model.robots[0].conflicts == [0, 1]
 

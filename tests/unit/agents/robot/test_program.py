@@ -126,10 +126,10 @@ def test_a_wander_turn_is_its_draw_in_whole_periods(scene: Scene) -> None:
     limit = math.radians(40)
     changes = {"leg_mean": 1e-6, "wander_turn": limit, "station_radius": 1e-6}
     model = scene([(0.0, 0.0, 0.0)], changes=changes, seed=6)
-    draws = stream(6, 0, Purpose.WANDER)
+    rng = stream(6, 0, Purpose.WANDER)
     heading, now = 0.0, 0
     for _ in range(20):
-        angle = draws.uniform(-limit, limit)
+        angle = rng.uniform(-limit, limit)
         heading, now = heading + angle, now + 1 + math.ceil(abs(angle) / STEP)
         model.env.run(until=now)
         assert math.remainder(pose(model)[2] - heading, 2 * math.pi) == pytest.approx(0, abs=1e-9)
@@ -197,11 +197,11 @@ def test_a_new_leg_begins_after_every_turn(scene: Scene, monkeypatch: pytest.Mon
     turns = []
     begin = Krembot.begin_wall_turn
 
-    def noted(robot: Krembot) -> None:
+    def record_turn(robot: Krembot) -> None:
         turns.append(int(robot._env.now))
         begin(robot)
 
-    monkeypatch.setattr(Krembot, "begin_wall_turn", noted)
+    monkeypatch.setattr(Krembot, "begin_wall_turn", record_turn)
     # Stations are tiny, so it never carries a puck home.
     model = scene([(0.0, 0.0, 0.3)], changes={"leg_mean": 1e6, "station_radius": 1e-6}, duration=300.0)
     model.env.run(until=2999)

@@ -94,9 +94,9 @@ def test_the_arguments_of_learn_agree_with_the_table_of_conflicts(spied: GameMod
         learned = [call[1:] for call in robot.policy.calls if call[0] == "learn"]
         choices = [call[1:] for call in robot.policy.calls if call[0] == "choose"]
         assert len(learned) == len(rows) - 1
-        for told, chosen, row in zip(learned, choices, rows, strict=False):
+        for arguments, chosen, row in zip(learned, choices, rows, strict=False):
             names = ("t_a", "t_p", "active", "reward", "q")
-            assert told == pytest.approx([row[name] for name in names], abs=1e-9)
+            assert arguments == pytest.approx([row[name] for name in names], abs=1e-9)
             assert chosen == (row["opponent_swarm"], row["action"])
 
 
@@ -121,8 +121,8 @@ def test_a_conflict_has_no_program_time_if_the_next_begins_as_its_action_ends(sp
 def test_times_agree_with_the_states_in_every_period(monkeypatch: pytest.MonkeyPatch, preempt: bool) -> None:
     """T(a): periods in state A from the start of a conflict; T(p): periods in state P until the next one."""
     monkeypatch.setitem(POLICIES, "spy", Spy)
-    what = game("spy", preempt=preempt, learning=60.0).replace(sample_period=PERIOD)
-    model = GameModel(what, seed=1)
+    described = game("spy", preempt=preempt, learning=60.0).replace(sample_period=PERIOD)
+    model = GameModel(described, seed=1)
     watched: dict[int, list[list[int]]] = {robot.index: [] for robot in model.members[1]}
     begun = dict.fromkeys(watched, 0)
     while model.phase == "learning" and not model.ended:
@@ -135,7 +135,7 @@ def test_times_agree_with_the_states_in_every_period(monkeypatch: pytest.MonkeyP
                 times.append([0, 0])
             if times:
                 times[-1][robot.state == "P"] += 1
-    told = 0
+    compared_conflicts = 0
     for robot in model.members[1]:
         closed = [call[1:3] for call in robot.policy.calls if call[0] == "learn"]
         seen = [(t_a * PERIOD, t_p * PERIOD) for t_a, t_p in watched[robot.index]]
@@ -144,8 +144,8 @@ def test_times_agree_with_the_states_in_every_period(monkeypatch: pytest.MonkeyP
         assert len(seen) - len(closed) in (0, 1)
         for ours, theirs in zip(seen, closed, strict=False):
             assert ours == pytest.approx(theirs, abs=1e-9)
-        told += len(closed)
-    assert told > 50
+        compared_conflicts += len(closed)
+    assert compared_conflicts > 50
 
 
 def test_the_bandits_hold_the_sums_over_the_table(played: GameModel) -> None:

@@ -1,4 +1,4 @@
-"""docs/theory.md maps every numbered statement to the functions whose docstrings name it, and back."""
+"""docs/theory.md maps every numbered statement to exactly the functions whose docstrings name it."""
 
 import importlib
 import inspect

@@ -43,7 +43,7 @@ def test_differences_cancel_for_two_swarms_but_not_for_three() -> None:
     assert not swarms.is_zero_sum_difference([[4.0, 15.0, -7.0]])
     assert not swarms.is_zero_sum_difference([[4.0, 3.0, -7.0], [4.0, 3.0, -6.0]])
     assert swarms.is_zero_sum_difference([[4.0, 3.0, -7.0], [1.0, 1.0, -2.0]])
-    assert not swarms.is_zero_sum_difference([[5.0], [3.0]])  # one swarm's is its utility
+    assert not swarms.is_zero_sum_difference([[5.0], [3.0]])  # the SUD of a single swarm is its utility
 
 
 def test_a_dummy_swarm_makes_only_constant_sum_games_zero_sum() -> None:
@@ -53,8 +53,8 @@ def test_a_dummy_swarm_makes_only_constant_sum_games_zero_sum() -> None:
 
 
 def test_wonderful_life_utility_equals_values_computed_by_hand() -> None:
-    # Swarm k: ρ and i; swarm m: j. i and ρ have 2 and 3 from each other, 5 and −1 from j.
-    # Without ρ, i has 4 instead of 2, and j has 6 instead of the 1 from ρ.
+    # Swarm k: ρ and i; swarm m: j. i gets 2 from ρ and 5 from j; ρ gets 3 from i and −1 from j.
+    # Without ρ, i gets 4 instead of 2, and j gets 6 instead of 1.
     u_i, u_rho, others_intra = (2.0, 5.0), (3.0, -1.0), 0.0
     own_intra, own_inter = u_i[0] + u_rho[0], u_i[1] + u_rho[1]
     sud = wlu.sud_by_parts(own_intra, others_intra, own_inter)

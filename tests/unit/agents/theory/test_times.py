@@ -12,26 +12,26 @@ OPPONENTS = [Interaction(3.0, 5.0, 2.0, 2.0), Interaction(2.0, 8.0, 1.0, 0.5)]
 # Opponents: βT(p) 10, 4; αT(a) 6, 2; βT(a) 6, 1.
 
 
-def test_within_a_swarm() -> None:
+def test_utility_within_a_swarm() -> None:
     assert times.time_utility(*OWN) == 22.0
     assert times.intra_utility(3, *OWN) == 66.0
     assert times.intra_utility(0, *OWN) == 0.0
 
 
-def test_between_swarms() -> None:
+def test_utility_between_swarms() -> None:
     assert times.pair_utility(OWN, OPPONENTS[0]) == 22.0 - 4.0
     # 2 · (28 − 7) − 2 · (6 − 4).
     assert times.inter_utility(OWN, OPPONENTS) == 38.0
     assert times.inter_utility(OWN, []) == 0.0
 
 
-def test_mixed() -> None:
+def test_utility_from_several_swarms() -> None:
     assert times.mixed_utility(OWN, 3, OPPONENTS) == 66.0 + 38.0
     assert times.mixed_utility(OWN, 3, OPPONENTS[:1], OPPONENTS[1:], []) == 66.0 + 18.0 + 20.0
     assert times.mixed_utility(OWN, 2) == 44.0
 
 
-def test_absence_and_presence() -> None:
+def test_utilities_in_absence_and_presence() -> None:
     assert times.absence_utility_of_one(MATES[0]) == 18.0
     assert times.absence_utility_of_swarm(MATES) == pytest.approx(29.0 + 7.0)
     assert times.absence_utility_of_swarm(OPPONENTS) == 14.0 + 7.0
@@ -46,7 +46,7 @@ def test_the_wlu_of_times_has_the_corrected_sign() -> None:
     assert times.approximate_wlu(OWN, [], []) == 0.0
 
 
-def test_equal_times() -> None:
+def test_the_wlu_of_equal_times() -> None:
     crowd = times.Crowd(3, 2, alpha_i=3.0, beta_i=4.0, alpha_k=2.0, beta_k=5.0, alpha_m=1.5, beta_m=0.5)
     assert times.gamma(crowd) == 7 * 4.0 - 2 * 0.5
     assert times.delta(crowd) == (2 * 0.5 - 3 * 5.0) + (4 * 1.5 - 3 * 2.0 - 7 * 3.0)
@@ -54,7 +54,7 @@ def test_equal_times() -> None:
     assert times.wlu_per_robot_met(crowd, t_a=2.0, t_p=10.0) == pytest.approx(40.0)
 
 
-def test_estimates() -> None:
+def test_estimated_wlu_and_its_weights() -> None:
     assert estimates.estimated_wlu(0.5, t_a=2.0, t_p=6.0, n_active=4, sign=-1, delta=0.25) == 3.0 - 0.25
     assert estimates.estimated_wlu(0.5, 2.0, 6.0, 4, -1, -0.25) == 3.0 - 0.25  # Δ counts by its size
     # 5 + ((3 − 1) · 2 − 2 · 1 · 3)/(4 · 2) · 4.

@@ -42,7 +42,7 @@ def play_out(policy: str) -> GameModel:
     return model
 
 
-GOOD = [
+VALID = [
     "own.py:Cautious",
     "own.py:Cautious(patience=2, mood='low')",
     "./own.py:Cautious",
@@ -55,7 +55,7 @@ GOOD = [
 ]
 
 
-@pytest.mark.parametrize("text", GOOD)
+@pytest.mark.parametrize("text", VALID)
 def test_a_user_defined_class_plays(text: str) -> None:
     model = play_out(text)
     assert model.ended == "time"
@@ -68,7 +68,7 @@ def at(code: str) -> str:
     return f"(own.py, line {next(k for k, line in enumerate(OWN.splitlines(), 1) if code in line)})"
 
 
-WRONG = [
+INVALID = [
     ("no.py:X", "policy='no.py:X': must name a file; ", "no.py: No such file or directory"),
     ("my\0own.py:X", "policy='my\\x00own.py:X': must name a file (", ")"),
     ("learner(reward='my\\0own.py:X')", "policy.reward='my\\x00own.py:X': must name a file (", ")"),
@@ -109,8 +109,8 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("text", "begin", "end"), WRONG, ids=[row[0] for row in WRONG])
-def test_errors_surface_when_the_game_is_described(text: str, begin: str, end: str) -> None:
+@pytest.mark.parametrize(("text", "begin", "end"), INVALID, ids=[row[0] for row in INVALID])
+def test_errors_surface_when_the_game_is_created(text: str, begin: str, end: str) -> None:
     with pytest.raises(InputError) as caught:
         game(text)
     line = str(caught.value).removeprefix("swarms.1.")

@@ -31,7 +31,7 @@ def game(**fields: Any) -> Game:
 
 
 def swarm(**fields: Any) -> dict[str, Any]:
-    """Return the swarms of a game of one swarm."""
+    """Return the argument `swarms` of a game of one swarm."""
     return {"swarms": ({"policy": "avoid", "size": 2, **fields},)}
 
 
@@ -179,7 +179,7 @@ def test_presets_and_limits_have_short_forms() -> None:
         ({"parameters": {"period": 0.35}, **swarm(drive=0.1, drive_action=0.9)}, "period=0.35: must be so"),
     ],
 )
-def test_bad_input_is_one_line_with_field_value_and_what_is_allowed(
+def test_errors_name_field_value_and_rule(
     fields: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(InputError) as refusal:
