@@ -53,7 +53,7 @@ def write_study(
     int
         Number of rows of `runs.parquet`.
     """
-    draws = np.random.default_rng(0)
+    rng = np.random.default_rng(0)
     runs, policies = [], []
     for scenario in scenarios:
         for condition in scenario.conditions:
@@ -67,18 +67,18 @@ def write_study(
                         "n": n,
                         "seed": seed,
                     }
-                    runs += [key | row for row in _swarms(condition, sizes, draws)]
-                    policies += [key | row for row in _learned(condition, draws)]
+                    runs += [key | row for row in _swarms(condition, sizes, rng)]
+                    policies += [key | row for row in _learned(condition, rng)]
     pd.DataFrame(runs).to_parquet(directory / "runs.parquet")
     if policies:
         pd.DataFrame(policies).to_parquet(directory / "policies.parquet")
     return len(runs)
 
 
-def _swarms(condition: Condition, sizes: list[int], draws: np.random.Generator) -> list[dict[str, Any]]:
+def _swarms(condition: Condition, sizes: list[int], rng: np.random.Generator) -> list[dict[str, Any]]:
     n = sum(sizes)
-    pucks = draws.poisson([size * (6.5 - 0.11 * n) for size in sizes])
-    share = np.clip(draws.normal(n / 60, 0.02, len(sizes)), 0, 1)
+    pucks = rng.poisson([size * (6.5 - 0.11 * n) for size in sizes])
+    share = np.clip(rng.normal(n / 60, 0.02, len(sizes)), 0, 1)
     return [
         {
             "swarm": k + 1,
@@ -98,7 +98,7 @@ def _swarms(condition: Condition, sizes: list[int], draws: np.random.Generator) 
     ]
 
 
-def _learned(condition: Condition, draws: np.random.Generator) -> list[dict[str, Any]]:
+def _learned(condition: Condition, rng: np.random.Generator) -> list[dict[str, Any]]:
     rows = []
     for k, rule in enumerate(condition.swarms):
         if "learner" not in rule.policy:
@@ -107,7 +107,7 @@ def _learned(condition: Condition, draws: np.random.Generator) -> list[dict[str,
         beyond = rule.policy.startswith(("learner", "inter-learner"))
         for opponent in range(len(condition.swarms)):
             if (opponent == k and within) or (opponent != k and beyond):
-                attack = float(draws.uniform())
+                attack = float(rng.uniform())
                 key = {"swarm": k + 1, "opponent": opponent + 1}
                 for action, share in (("flight", 1 - attack), ("fight", attack)):
                     rows.append(key | {"action": action, "share": share, "attack_share": attack})

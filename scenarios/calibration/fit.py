@@ -170,10 +170,10 @@ def _search(
     """Yield the generations of the search."""
     cells = [cell for cell in target if cell[1] in setup.densities]
     wanted = np.array([target[cell] for cell in cells])
-    draws = np.random.default_rng(FIT_SEED)
+    rng = np.random.default_rng(FIT_SEED)
     options = {
         "bounds": [0.0, 1.0],
-        "randn": lambda *shape: draws.standard_normal(shape),
+        "randn": lambda *shape: rng.standard_normal(shape),
         "seed": math.nan,  # does not seed numpy's global generator
         "verbose": -9,
     } | ({"popsize": setup.population} if setup.population else {})

@@ -15,7 +15,7 @@ from kswarms.scenarios.cli.options import ConditionName, Robots, RunDigest, Seed
 from kswarms.scenarios.cli.progress import track
 from kswarms.scenarios.runs.run import Run
 
-_MOST_FRAMES: Final = 100_000
+_MAX_FRAMES: Final = 100_000
 """Maximum number of frames of a film: over an hour at 20 frames per second."""
 
 
@@ -58,8 +58,8 @@ def film(
     if sheet is None:
         check_film(out)
         step = speed / fps
-        fits = (end - begin) / step < _MOST_FRAMES
-        _check("speed", speed, fits, f"must be higher: a film has at most {_MOST_FRAMES:,} frames")
+        fits = (end - begin) / step < _MAX_FRAMES
+        _check("speed", speed, fits, f"must be higher: a film has at most {_MAX_FRAMES:,} frames")
         instants = [begin + k * step for k in range(int((end - begin) / step + 1e-9) + 1)]
     else:
         _check("out", str(out), out.suffix == ".png", "must end with .png for a contact sheet")

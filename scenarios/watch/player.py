@@ -21,9 +21,9 @@ from kswarms.scenarios.watch.conflicts import ConflictReader, WatchedConflict
 from kswarms.scenarios.watch.robot_view import RobotView, row_of, view_robot
 
 Booleans = NDArray[np.bool_]
-MOST_SAMPLES: Final = 400
+MAX_SAMPLES: Final = 400
 """Maximum length of the history; a longer one is thinned to every second sample."""
-MOST_CONFLICTS: Final = 5000
+MAX_CONFLICTS: Final = 5000
 """Number of latest conflicts kept; `kswarms.scenarios.watch.conflicts.conflicts_of` returns all of a run."""
 FIRST_INTERVAL: Final = 2.0
 """Initial interval of the samples of the history (s)."""
@@ -55,7 +55,7 @@ class Player:
     """Plays a game step by step. Its methods are thread-safe.
 
     `model` is the running game; `seek` replaces it when it rewinds. `conflicts` are the latest conflicts, at
-    most `MOST_CONFLICTS`, in the order in which they ended.
+    most `MAX_CONFLICTS`, in the order in which they ended.
     """
 
     def __init__(self, game: Game, seed: int) -> None:
@@ -68,7 +68,7 @@ class Player:
         game = self.game.replace(sample_period=self.game.parameters.period)
         self.model = GameModel(game, seed=self.seed, record="conflicts")
         self._reader = ConflictReader(self.model)
-        self.conflicts: deque[WatchedConflict] = deque(maxlen=MOST_CONFLICTS)
+        self.conflicts: deque[WatchedConflict] = deque(maxlen=MAX_CONFLICTS)
         self._interval = self.model.controller.periods(FIRST_INTERVAL)
         self._steps = 0
         self._history = [self._sample()]
@@ -172,7 +172,7 @@ class Player:
     def _add_sample(self) -> None:
         self.conflicts.extend(self._reader.read())
         self._history.append(self._sample())
-        if len(self._history) > MOST_SAMPLES:
+        if len(self._history) > MAX_SAMPLES:
             self._interval *= 2
             self._history = self._history[::2]
 

@@ -1,4 +1,4 @@
-"""Chance in tests: samples of a known distribution, and whether a count of hits is plausible."""
+"""Random samples of a known distribution, and a test of counts."""
 
 from collections.abc import Iterator
 

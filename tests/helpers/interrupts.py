@@ -6,6 +6,6 @@ import signal
 def accept_interrupts() -> None:
     """Restore the default handling of Ctrl-C, which background jobs of a shell and their children ignore.
 
-    For the argument ``preexec_fn`` of `subprocess.Popen`.
+    Use it as the argument ``preexec_fn`` of `subprocess.Popen`.
     """
     signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -60,7 +60,7 @@ def robots(runs: tuple[str, ...] = ("a",)) -> pd.DataFrame:
 
 
 def learning_conflicts() -> pd.DataFrame:
-    """Return conflicts in which robot 2 fights S1 from 10 s on, with Q up to 1.9, and robot 3 never."""
+    """Return conflicts. Robot 2 fights S1 from 10 s on, with Q up to 1.9; robot 3 never does."""
     rows = [conflict(0, 2, 0.0, phase="learning", action="fight")]
     for second in range(20):
         late = {"action": "fight", "q": second / 10} if second >= 10 else {"q": 0.1}

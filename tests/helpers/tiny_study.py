@@ -37,7 +37,7 @@ def read_tables(directory: str) -> list[bytes]:
 
 
 def uninterrupted_tables() -> list[bytes]:
-    """Play the whole study, and return its tables."""
+    """Play the study without interruption, and return its tables."""
     assert invoke([*RUN, "--out", "whole"]) == 0
     return read_tables("whole")
 

@@ -44,6 +44,6 @@ def before_games(monkeypatch: pytest.MonkeyPatch) -> Callable[[Fault], None]:
 @pytest.fixture
 def show(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Any]]:
     """Return a function that shows a page; close the pages afterwards."""
-    from tests.helpers.shown_page import showing  # here, since it needs the extra `explore`
+    from tests.helpers.rendered_page import render_pages  # here, since it needs the extra `explore`
 
-    yield from showing(monkeypatch)
+    yield from render_pages(monkeypatch)

@@ -173,7 +173,7 @@ def test_times_of_the_present_robots_add_up() -> None:
 # Both values of `absent_from`.
 
 
-def test_without_learning_both_are_the_same() -> None:
+def test_without_learning_both_values_give_the_same_game() -> None:
     models = [
         play(game("avoid", "attack", learning=0.0, absent=(3,), absent_from=way)) for way in ABSENT_FROM
     ]

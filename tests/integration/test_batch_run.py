@@ -52,7 +52,7 @@ def run_script(folder: Path, processes: int, period: int) -> list[Row]:
     return sorted(rows, key=lambda row: (row["RunId"], row["Step"]))
 
 
-def played(row: Row) -> ForagingModel:
+def play_game(row: Row) -> ForagingModel:
     """Return the game of a row, played directly."""
     names = ("n", "policies", "seed", "puck_limit")
     model = ForagingModel(duration=47.0, **{name: row[name] for name in names})
@@ -70,7 +70,7 @@ def test_two_processes_give_the_rows_of_one(tmp_path: Path) -> None:
     # All samples of each run are there, with the one at its end.
     ends = {row["RunId"]: row for row in one}
     for row in ends.values():
-        model = played(row)
+        model = play_game(row)
         samples = [other["time"] for other in one if other["RunId"] == row["RunId"]]
         assert samples == model.sample_times
         assert row["time"] == model.time
@@ -84,7 +84,7 @@ def test_the_last_row_is_the_state_at_the_end(tmp_path: Path) -> None:
     assert [row["RunId"] for row in rows] == list(range(16))
     assert {row["time"] for row in rows if row["puck_limit"] == 0} == {47.0}
     for row in rows:
-        for result in played(row).results():
+        for result in play_game(row).results():
             k = result.pop("swarm")
             assert (row["game_time"], row["ended"]) == (result.pop("duration"), result.pop("ended"))
             assert row["duration"] == 47.0  # the argument

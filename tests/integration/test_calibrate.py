@@ -1,4 +1,4 @@
-"""`kswarms calibrate` on games of few robots, and on made-up games when its process is killed."""
+"""`kswarms calibrate` on games of few robots; resumption of a killed fit on synthetic games."""
 
 import json
 import subprocess
@@ -17,7 +17,7 @@ TINY = [
     *("--population", "4", "--validation-seeds", "6"),
 ]
 
-# A fit of made-up games whose process kills itself after some games.
+# A fit on synthetic games whose process kills itself after some games.
 FIT = """
 import math, os, signal, sys
 from pathlib import Path

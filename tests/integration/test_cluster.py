@@ -1,4 +1,4 @@
-"""Studies on a Dask cluster of two processes: the same bytes as on this machine, and nothing lost."""
+"""Studies on a Dask cluster of two processes: the same tables as with local workers, and no lost runs."""
 
 import os
 import signal

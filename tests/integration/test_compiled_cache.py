@@ -1,4 +1,4 @@
-"""Machine code that is older than the sources is not run, wherever numba caches it."""
+"""Cached machine code that is older than the sources is deleted, wherever numba caches it."""
 
 import os
 import subprocess
@@ -9,7 +9,7 @@ import pytest
 
 
 @pytest.mark.slow
-def test_machine_code_older_than_the_sources_is_dropped_on_import(tmp_path: Path) -> None:
+def test_machine_code_older_than_the_sources_is_deleted_on_import(tmp_path: Path) -> None:
     environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
 
     def cached_after_import() -> dict[Path, float]:

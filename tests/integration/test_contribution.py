@@ -28,7 +28,7 @@ def test_it_writes_a_table_and_a_figure_and_prints_the_results(capsys: pytest.Ca
     assert "mean of S2" in out
 
 
-def test_another_condition_is_kept_beside_the_first() -> None:
+def test_rows_of_several_conditions_are_kept() -> None:
     for condition in ("delta=0.25", "random"):
         options = ["--condition", condition, "--robots", "5", "--absent-from", "game", "--seeds", "1"]
         assert invoke(["contribution", "fig-6.12", *FEW, *options, "--out", "here"]) == 0

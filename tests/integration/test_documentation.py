@@ -1,4 +1,4 @@
-"""The documentation does what it says: its files, commands and code run in the order of the text."""
+"""The files, commands and code of the documentation run in the order of the text."""
 
 import doctest
 import os

@@ -37,7 +37,7 @@ PATIENCE = 40.0
 
 
 @contextmanager
-def served(*arguments: str) -> Iterator[str]:
+def serve(*arguments: str) -> Iterator[str]:
     """Start the command and yield the address that it prints."""
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path)}
     server = subprocess.Popen(
@@ -63,7 +63,7 @@ def served(*arguments: str) -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def address() -> Iterator[str]:
-    with served("fig-6.4b") as address:
+    with serve("fig-6.4b") as address:
         yield address
 
 
@@ -209,7 +209,7 @@ def test_a_run_with_an_absent_robot_is_watched(browse: Callable[..., Browser], t
     command = f"contribution fig-6.4b --n 6 --robots 3 --seeds 1 --first-seed 5 --jobs 1 --out {tmp_path}"
     assert invoke(command.split()) == 0
     (row,) = pq.read_table(tmp_path / "contribution.parquet").to_pylist()
-    with served("--run", row["run_without"], str(tmp_path)) as address:
+    with serve("--run", row["run_without"], str(tmp_path)) as address:
         browser = browse((1400, 900), address)
         values = [field.get_attribute("value") for field in browser.all("input")]
         assert f"run {row['run_without']}" in values

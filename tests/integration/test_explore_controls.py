@@ -10,10 +10,10 @@ pytest.importorskip("solara", reason="needs the extra `explore`")
 import ipyvuetify  # comes with solara
 
 from kswarms.agents.learning.selection_rules import UCB
-from tests.helpers.shown_page import Shown, unfold, wait
+from tests.helpers.rendered_page import RenderedPage, unfold, wait
 
 
-def test_learning_can_be_skipped_and_its_controls_change_it(show: Callable[[str], Shown]) -> None:
+def test_learning_can_be_skipped_and_its_controls_change_it(show: Callable[[str], RenderedPage]) -> None:
     shown = show("fig-6.4b")
     session = shown.session
     shown.write("Time to learn", 100.0)
@@ -31,7 +31,9 @@ def test_learning_can_be_skipped_and_its_controls_change_it(show: Callable[[str]
     assert session.player.game.swarms[1].policy == "inter-learner(reward='individual', rule='greedy')"
 
 
-def test_a_value_between_two_steps_of_a_slider_is_kept(show: Callable[[str], Shown], tmp_path: Path) -> None:
+def test_a_value_between_two_steps_of_a_slider_is_kept(
+    show: Callable[[str], RenderedPage], tmp_path: Path
+) -> None:
     (tmp_path / "off.toml").write_text(
         """
         id = "off"
@@ -53,7 +55,7 @@ def test_a_value_between_two_steps_of_a_slider_is_kept(show: Callable[[str], Sho
     assert shown.session.form.swarms[1]["policy"] == "inter-learner(rule='ucb(gamma=0.2)')"
 
 
-def test_every_control_changes_the_game(show: Callable[[str], Shown]) -> None:
+def test_every_control_changes_the_game(show: Callable[[str], RenderedPage]) -> None:
     shown = show("fig-6.10a")
     session = shown.session
     shown.find(ipyvuetify.Select, "Condition").v_model = list(session.conditions)[1]
@@ -80,7 +82,7 @@ def test_every_control_changes_the_game(show: Callable[[str], Shown]) -> None:
     assert "id='': must be a scenario" in shown.texts()
 
 
-def test_the_world_can_be_changed_by_sliders_and_text(show: Callable[[str], Shown]) -> None:
+def test_the_world_can_be_changed_by_sliders_and_text(show: Callable[[str], RenderedPage]) -> None:
     shown = show("fig-6.1c")
     session = shown.session
     unfold(shown, "World")

@@ -19,10 +19,10 @@ from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.explore import page
 from kswarms.scenarios.explore.session import Session
 from kswarms.scenarios.runs.run import Run, digest
-from tests.helpers.shown_page import Shown, unfold, wait
+from tests.helpers.rendered_page import RenderedPage, unfold, wait
 
 
-def test_the_page_shows_the_arena_the_controls_and_the_curves(show: Callable[[str], Shown]) -> None:
+def test_the_page_shows_the_arena_the_controls_and_the_curves(show: Callable[[str], RenderedPage]) -> None:
     shown = show("fig-6.1c")
     assert len(shown.arena().frame["x"]) == 20
     texts = shown.texts()
@@ -31,7 +31,7 @@ def test_the_page_shows_the_arena_the_controls_and_the_curves(show: Callable[[st
     assert not any(text in texts for text in ("Skip learning", "Δ"))  # no learners
 
 
-def test_buttons_play_step_and_reset_the_game(show: Callable[[str], Shown]) -> None:
+def test_buttons_play_step_and_reset_the_game(show: Callable[[str], RenderedPage]) -> None:
     shown = show("fig-6.1c")
     session = shown.session
     shown.click("Step")
@@ -53,8 +53,8 @@ def test_buttons_play_step_and_reset_the_game(show: Callable[[str], Shown]) -> N
     wait(lambda: shown.arena().frame["time"] == 30.0)
 
 
-def test_a_page_without_a_browser_plays_on_slowly(
-    show: Callable[[str], Shown], monkeypatch: pytest.MonkeyPatch
+def test_a_page_whose_browser_draws_nothing_plays_slowly(
+    show: Callable[[str], RenderedPage], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(page, "_PANELS_EVERY", 0.05)
     shown = show("fig-6.1c")
@@ -65,7 +65,7 @@ def test_a_page_without_a_browser_plays_on_slowly(
     shown.click("Pause")
 
 
-def test_absent_robots_are_shown_and_can_be_added(show: Callable[[str | Run], Shown]) -> None:
+def test_absent_robots_are_shown_and_can_be_added(show: Callable[[str | Run], RenderedPage]) -> None:
     game = CATALOGUE["fig-6.4b"].game("", 6).replace(absent=(0, 3), absent_from="game")
     shown = show(Run(digest(game, 2), game, 2, (("fig-6.4b", ""),)))
     session = shown.session
@@ -82,7 +82,7 @@ def test_absent_robots_are_shown_and_can_be_added(show: Callable[[str | Run], Sh
     wait(lambda: "Absent robots" not in shown.texts())
 
 
-def test_a_robot_can_be_selected_and_inspected(show: Callable[[str], Shown]) -> None:
+def test_a_robot_can_be_selected_and_inspected(show: Callable[[str], RenderedPage]) -> None:
     shown = show("fig-6.4b")
     session = shown.session
     session.player.advance(60.0)
@@ -101,7 +101,7 @@ def test_a_robot_can_be_selected_and_inspected(show: Callable[[str], Shown]) -> 
     assert session.selected == 19
 
 
-def test_conflicts_are_listed_with_the_knowledge_of_the_robot(show: Callable[[str], Shown]) -> None:
+def test_conflicts_are_listed_with_the_knowledge_of_the_robot(show: Callable[[str], RenderedPage]) -> None:
     shown = show("fig-6.4b")
     shown.open(2)
     assert "No conflict has ended yet." in shown.texts()
@@ -115,7 +115,7 @@ def test_conflicts_are_listed_with_the_knowledge_of_the_robot(show: Callable[[st
     assert len({row[1] for row in shown.tables()[0].rows}) > 1
 
 
-def test_the_drawing_has_conflict_sectors_on_demand(show: Callable[[str], Shown]) -> None:
+def test_the_drawing_has_conflict_sectors_on_demand(show: Callable[[str], RenderedPage]) -> None:
     shown = show("fig-6.1c")
     assert not shown.arena().frame["sectors"]
     unfold(shown, "Drawing")
@@ -181,7 +181,9 @@ def test_a_page_is_served_at_the_printed_address(monkeypatch: pytest.MonkeyPatch
         server.serve("fig-6.2", taken.getsockname()[1], False, announced.put)
 
 
-def test_a_page_that_is_closed_ends_its_thread_and_frees_its_game(show: Callable[[str], Shown]) -> None:
+def test_a_page_that_is_closed_ends_its_thread_and_frees_its_game(
+    show: Callable[[str], RenderedPage],
+) -> None:
     before = set(threading.enumerate())
     shown = show("fig-6.1c")
     (thread,) = set(threading.enumerate()) - before

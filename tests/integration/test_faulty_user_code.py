@@ -124,8 +124,8 @@ def test_a_rule_that_changes_the_bandit_is_refused(capsys: pytest.CaptureFixture
 @pytest.mark.parametrize(("opponent", "action"), [(3, "fight"), (0, "fight"), (1, "dance")])
 def test_a_snapshot_must_fit_the_game(opponent: int, action: str) -> None:
     arm = {"opponent": opponent, "action": action, "reward": 1.0, "time": 1.0, "count": 1.0, "q": 1.0}
-    told = f"    def snapshot(self):\n        return [{arm}]\n"
-    Path("faulty.py").write_text(POLICY.replace("FAULT", "pass") + "\n" + told)
+    snapshot = f"    def snapshot(self):\n        return [{arm}]\n"
+    Path("faulty.py").write_text(POLICY.replace("FAULT", "pass") + "\n" + snapshot)
     with pytest.raises(InputError, match=r"snapshot\(\) must describe the game's actions and swarms, not "):
         ForagingModel(n=4, policies="avoid,faulty.py:Faulty")
 
@@ -133,7 +133,7 @@ def test_a_snapshot_must_fit_the_game(opponent: int, action: str) -> None:
 def test_a_step_reports_a_stopped_clock() -> None:
     Path("faulty.py").write_text(POLICY.replace("FAULT", "raise StopSimulation(None)"))
     model = ForagingModel(n=12, policies="avoid,faulty.py:Faulty", duration=60)
-    with pytest.raises(RuntimeError, match=r"the clock was stopped at \d+"):  # noqa: PT012  # in which, none can tell
+    with pytest.raises(RuntimeError, match=r"the clock was stopped at \d+"):  # noqa: PT012  # any step may raise it
         while model.running:
             model.step()
 

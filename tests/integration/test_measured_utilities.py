@@ -27,7 +27,7 @@ BETA = {(k, m): 1.0 + 0.1 * k + 0.01 * m for k in (1, 2, 3) for m in (1, 2, 3)}
 TRIO = (Swarm(policy="avoid", size=5), Swarm(policy="attack", size=6), Swarm(policy="mixed", size=4))
 
 
-def played(game: Game, record: str = "conflicts") -> GameModel:
+def play_game(game: Game, record: str = "conflicts") -> GameModel:
     model = GameModel(game, seed=5, record=record)
     model.play()
     return model
@@ -35,7 +35,7 @@ def played(game: Game, record: str = "conflicts") -> GameModel:
 
 def test_utilities_agree_with_the_sampled_states() -> None:
     # With a sample in each control period, the states give the times in A and in P.
-    model = played(Game(swarms=TRIO, duration=40.0, sample_period=0.1), "conflicts,trajectory")
+    model = play_game(Game(swarms=TRIO, duration=40.0, sample_period=0.1), "conflicts,trajectory")
     tables = model.tables()
     conflicts, states = pd.DataFrame(tables["conflicts"]), pd.DataFrame(tables["trajectory"])
     in_a = states.pivot(index="time", columns="robot", values="state").to_numpy() == "A"
@@ -70,7 +70,7 @@ def test_utilities_agree_with_the_sampled_states() -> None:
 
 @pytest.mark.parametrize("swarms", [TRIO[:2], TRIO], ids=["two swarms", "three swarms"])
 def test_the_utilities_of_two_swarms_from_each_other_cancel(swarms: tuple[Swarm, ...]) -> None:
-    conflicts = pd.DataFrame(played(Game(swarms=swarms, duration=60.0)).tables()["conflicts"])
+    conflicts = pd.DataFrame(play_game(Game(swarms=swarms, duration=60.0)).tables()["conflicts"])
     robots = robot_utilities(conflicts, ALPHA, BETA)
     u = robots[[f"u_{k + 1}" for k in range(len(swarms))]].to_numpy()
     swarm_of = (robots["swarm"] - 1).tolist()
@@ -91,7 +91,7 @@ def test_the_learning_phase_is_measured_separately() -> None:
     game = Game(
         swarms=(Swarm(policy="avoid", size=6), Swarm(policy="learner", size=6)), learning=40.0, duration=60.0
     )
-    conflicts = pd.DataFrame(played(game).tables()["conflicts"])
+    conflicts = pd.DataFrame(play_game(game).tables()["conflicts"])
     assert set(conflicts["phase"]) == {"learning", "game"}
     measured = robot_utilities(conflicts)
     assert measured.equals(robot_utilities(conflicts[conflicts["phase"] == "game"]))

@@ -1,4 +1,4 @@
-"""A study of kswarms 0.1.0 can be read, and not be resumed."""
+"""A study of kswarms 0.1.0 can be read but not resumed."""
 
 import shutil
 from pathlib import Path
@@ -19,7 +19,7 @@ def _old_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shutil.copytree(STUDY, "old")
 
 
-def test_its_status_and_report_are_as_before(capsys: pytest.CaptureFixture[str]) -> None:
+def test_its_status_and_report_can_be_read(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["status", "old"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[1].split() == ["old", "2", "0", "0", "0.0", "s"]
@@ -28,7 +28,7 @@ def test_its_status_and_report_are_as_before(capsys: pytest.CaptureFixture[str])
     assert Path("old/report.html").stat().st_size > 0
 
 
-def test_its_runs_are_neither_replayed_nor_joined_by_others(capsys: pytest.CaptureFixture[str]) -> None:
+def test_its_runs_cannot_be_replayed_and_it_accepts_no_new_runs(capsys: pytest.CaptureFixture[str]) -> None:
     before = {path.name: path.read_bytes() for path in STUDY.iterdir()}
     run = pq.read_table("old/runs.parquet")["run"][0].as_py()
     assert invoke(["replay", "old", run]) == 2

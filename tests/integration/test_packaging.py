@@ -58,7 +58,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.slow
-def test_the_wheel_holds_kswarms_alone_as_files(wheel: Path) -> None:
+def test_the_wheel_contains_the_files_of_kswarms_and_no_links(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         entries = archive.infolist()
     metadata = f"kswarms-{kswarms.__version__}.dist-info"

@@ -1,4 +1,4 @@
-"""Results of games of a script: swept by `mesa.batch_run` or played as models, then drawn and judged."""
+"""Games played by a script, with `mesa.batch_run` or as models: results are drawn and judged."""
 
 from typing import Any
 

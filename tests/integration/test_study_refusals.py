@@ -1,4 +1,4 @@
-"""Refusals of a study: directories in use or of something else, and runs that must not be mixed."""
+"""A study refuses directories in use or with other content, and runs that must not be mixed."""
 
 import fcntl
 import json

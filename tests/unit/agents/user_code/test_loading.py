@@ -17,7 +17,7 @@ from kswarms.scenarios.runs.play import play
 from kswarms.scenarios.runs.run import Run, digest
 
 # Not imported: loaded by its reference.
-OWN = (Path(__file__).parents[3] / "helpers" / "users_own.py").read_text()
+OWN = (Path(__file__).parents[3] / "helpers" / "user_code.py").read_text()
 
 
 @pytest.fixture(autouse=True)

@@ -16,7 +16,7 @@ from kswarms.analysis.findings.verdicts import Region
 from kswarms.analysis.results.published import table_6_1
 from kswarms.analysis.results.runs import Results
 from kswarms.analysis.statistics.intervals import Interval
-from tests.helpers.made_up_results import (
+from tests.helpers.synthetic_results import (
     BEHIND,
     DENSITIES,
     FAR,

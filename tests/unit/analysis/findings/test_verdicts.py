@@ -6,7 +6,7 @@ from kswarms.analysis.findings import FAILS, HOLDS, NO_DATA, UNDECIDED, Verdict
 from kswarms.analysis.findings.claims import Claim, Compare, Overtake, Peak, Trend
 from kswarms.analysis.findings.quantity import Quantity
 from kswarms.analysis.results.runs import Results
-from tests.helpers.made_up_results import BEHIND, FAR, S1, S2, TIE, duel, more, verdict_on
+from tests.helpers.synthetic_results import BEHIND, FAR, S1, S2, TIE, duel, more, verdict_on
 
 BOTH = Quantity(scenario="duel")
 OVERTAKE = Overtake(ahead=S2, behind=S1, between=(16, 30))

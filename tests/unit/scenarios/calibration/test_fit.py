@@ -1,4 +1,4 @@
-"""Calibration on made-up games: result, validation, interruption."""
+"""Calibration on synthetic games: result, validation, interruption."""
 
 import json
 import math
@@ -39,8 +39,8 @@ def share(run: Run, friction: float, distance: float = START["conflict_distance"
     return TARGET[opponent, n] / 100 + 0.3 * off + noise
 
 
-class Table:
-    """Returns made-up shares, notes the runs, and is interrupted after some runs."""
+class FakePlay:
+    """Plays runs: yields synthetic shares, records the runs, and is interrupted after some of them."""
 
     def __init__(self, stop_after: float = math.inf, backwards: bool = False, **truth: float) -> None:
         self.runs: list[Run] = []
@@ -66,7 +66,7 @@ def test_the_error_compares_means_over_seeds() -> None:
 
 def test_the_search_finds_the_values_behind_the_table(tmp_path: Path) -> None:
     setup = Setup(free=("friction", "conflict_distance", "gamma"), densities=(6, 30), seeds=2, generations=30)
-    table = Table(friction=0.27, distance=0.1)
+    table = FakePlay(friction=0.27, distance=0.1)
     trace = calibrate(setup, table, tmp_path)
     found = trace["generations"][-1]["mean"]
     assert found["friction"] == pytest.approx(0.27, rel=0.1)
@@ -80,7 +80,7 @@ def test_the_search_finds_the_values_behind_the_table(tmp_path: Path) -> None:
 
 
 def test_the_start_values_are_kept_if_they_are_the_best(tmp_path: Path) -> None:
-    table = Table(friction=START["friction"])
+    table = FakePlay(friction=START["friction"])
     trace = calibrate(TINY.replace(validation_seeds=30), table, tmp_path)
     assert trace["validation"]["gain"] < 0
     assert trace["result"]["beats_start"] is False
@@ -91,8 +91,8 @@ def test_without_any_effect_the_gain_is_zero(tmp_path: Path) -> None:
     assert (validation["gain"], validation["gain_low"], validation["gain_high"]) == (0, 0, 0)
 
 
-def test_candidates_of_a_generation_share_seeds_of_their_own(tmp_path: Path) -> None:
-    table = Table()
+def test_candidates_of_a_generation_have_the_same_seeds(tmp_path: Path) -> None:
+    table = FakePlay()
     calibrate(TINY, table, tmp_path)
     seeds = [run.seed for run in table.runs]
     assert seeds[:24] == [10_000] * 8 + [10_001] * 8 + [10_002] * 8  # 4 points, 2 cells
@@ -103,7 +103,7 @@ def test_candidates_of_a_generation_share_seeds_of_their_own(tmp_path: Path) -> 
 
 @pytest.mark.parametrize("games", [0, 1, 5, 8, 17, 24, 30])
 def test_a_resumed_fit_equals_an_uninterrupted_one(games: int, tmp_path: Path) -> None:
-    whole, before, after = Table(), Table(stop_after=games), Table(backwards=True)
+    whole, before, after = FakePlay(), FakePlay(stop_after=games), FakePlay(backwards=True)
     trace = calibrate(TINY, whole, tmp_path / "whole")
     with pytest.raises(KeyboardInterrupt):
         calibrate(TINY, before, tmp_path / "parts")
@@ -117,37 +117,39 @@ def test_temporary_files_of_a_killed_fit_are_removed(tmp_path: Path) -> None:
     for name in ("shares.json", "calibration.json"):
         (tmp_path / f".unfinished-99999999-{name}").write_text("{")  # not the id of a process
     with pytest.raises(KeyboardInterrupt):
-        calibrate(TINY, Table(stop_after=0), tmp_path)
+        calibrate(TINY, FakePlay(stop_after=0), tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["shares.json"]
 
 
 def test_a_fit_can_be_extended_by_more_generations(tmp_path: Path) -> None:
-    calibrate(TINY, Table(), tmp_path / "grown")
+    calibrate(TINY, FakePlay(), tmp_path / "grown")
     more = TINY.replace(generations=5)
-    assert calibrate(more, Table(), tmp_path / "grown") == calibrate(more, Table(), tmp_path / "at once")
+    assert calibrate(more, FakePlay(), tmp_path / "grown") == calibrate(
+        more, FakePlay(), tmp_path / "at once"
+    )
 
 
-def test_the_search_leaves_the_global_generator_alone(tmp_path: Path) -> None:
+def test_the_search_does_not_use_the_global_generator(tmp_path: Path) -> None:
     before = list(np.random.get_state()[1])  # noqa: NPY002
-    calibrate(TINY, Table(), tmp_path)
+    calibrate(TINY, FakePlay(), tmp_path)
     assert list(np.random.get_state()[1]) == before  # noqa: NPY002
 
 
 def test_another_setup_needs_another_directory_or_a_fresh_start(tmp_path: Path) -> None:
-    calibrate(TINY, Table(), tmp_path)
+    calibrate(TINY, FakePlay(), tmp_path)
     other = TINY.replace(free=("friction", "flight_duration"))
     with pytest.raises(InputError, match="has another setup"):
-        calibrate(other, Table(), tmp_path)
-    trace = calibrate(other, Table(), tmp_path, fresh=True)
+        calibrate(other, FakePlay(), tmp_path)
+    trace = calibrate(other, FakePlay(), tmp_path, fresh=True)
     assert set(trace["start"]) == {"friction", "flight_duration"}
-    assert calibrate(other, Table(stop_after=0), tmp_path) == trace
+    assert calibrate(other, FakePlay(stop_after=0), tmp_path) == trace
 
 
 @pytest.mark.parametrize("content", ["", "[]", "3", '{"setup": {}}', '{"setup": 1, "shares": {}}'])
 def test_a_foreign_file_is_refused_and_kept(content: str, tmp_path: Path) -> None:
     (tmp_path / "shares.json").write_text(content)
     with pytest.raises(InputError, match=r"has a shares\.json that is no file of a fit"):
-        calibrate(TINY, Table(), tmp_path)
+        calibrate(TINY, FakePlay(), tmp_path)
     assert (tmp_path / "shares.json").read_text() == content
 
 
@@ -177,11 +179,11 @@ def test_an_invalid_setup_is_refused(change: dict[str, object], complaint: str) 
 
 def test_densities_must_be_in_the_table_and_out_a_directory(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"densities=8: must be among 6, 30"):
-        calibrate(TINY.replace(densities=(6, 8)), Table(), tmp_path / "out")
+        calibrate(TINY.replace(densities=(6, 8)), FakePlay(), tmp_path / "out")
     assert not (tmp_path / "out").exists()
     (tmp_path / "file").touch()
     with pytest.raises(InputError, match="must be a writable directory"):
-        calibrate(TINY, Table(), tmp_path / "file")
+        calibrate(TINY, FakePlay(), tmp_path / "file")
 
 
 def test_shares_are_saved_during_long_generations(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -192,7 +194,7 @@ def test_shares_are_saved_during_long_generations(tmp_path: Path, monkeypatch: p
         shares_module, "write_json", lambda _, content: saved.append(len(content.get("shares", ())))
     )
     with pytest.raises(KeyboardInterrupt):
-        calibrate(TINY, Table(stop_after=7), tmp_path)
+        calibrate(TINY, FakePlay(stop_after=7), tmp_path)
     assert saved == [0, 2, 4, 6, 7]
 
 
@@ -243,6 +245,6 @@ def test_the_start_values_are_the_defaults() -> None:
 
 def test_all_parameters_can_be_searched_together(tmp_path: Path) -> None:
     setup = Setup(densities=(6,), seeds=1, generations=2, validation_seeds=6)
-    trace = calibrate(setup, Table(), tmp_path)
+    trace = calibrate(setup, FakePlay(), tmp_path)
     assert len(trace["start"]) == 16
     assert all(0 <= point["push_share"] <= 0.5 for point in trace["generations"][1]["points"])

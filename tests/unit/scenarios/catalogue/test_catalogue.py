@@ -148,7 +148,7 @@ def test_titles_are_unique() -> None:
     assert len(titles) == len(CATALOGUE) + len(TABLES)
 
 
-def test_tables_stand_for_the_figures_that_they_tabulate() -> None:
+def test_a_table_selects_its_figures() -> None:
     assert {name: table.scenarios for name, table in TABLES.items()} == {
         "table-6.1": ("fig-6.4a", "fig-6.4b"),
         "table-6.2": ("fig-6.8",),
@@ -231,7 +231,7 @@ def test_the_halves_of_a_mixed_swarm_allow_every_even_number(name: str) -> None:
             assert first - third in {0, 1}
 
 
-def test_the_single_swarm_has_a_curve_per_action_and_one_that_learns() -> None:
+def test_the_single_swarm_has_a_curve_for_each_action_and_one_for_a_learner() -> None:
     curves = CATALOGUE["fig-6.15"].conditions
     for curve in curves:
         assert {action.name: (action.direction, action.duration) for action in curve.actions} == ACTIONS

@@ -24,12 +24,12 @@ GAME = Game(
 )
 
 
-def conflicts_counted(conflicts: Any, swarms: int) -> list[float]:
-    """Replace SUD in time-utility by a number that differs between games and swarms."""
+def count_conflicts(conflicts: Any, swarms: int) -> list[float]:
+    """Return a number for each swarm, in place of its SUD in time-utility; games have different numbers."""
     return [float(len(conflicts["phase"]) + swarm) for swarm in range(swarms)]
 
 
-def played(game: Game, seed: int) -> GameModel:
+def play_game(game: Game, seed: int) -> GameModel:
     model = GameModel(game, seed, record=RECORD)
     model.play()
     return model
@@ -39,7 +39,7 @@ def played(game: Game, seed: int) -> GameModel:
     ("text", "robots"),
     [(None, range(7)), ("S2", (4, 5, 6)), ("3", (3,)), (" 5, 0,5", (0, 5)), ("6,S1", (0, 1, 2, 3, 6))],
 )
-def test_robots_are_named_by_number_or_swarm(text: str | None, robots: Sequence[int]) -> None:
+def test_robots_are_selected_by_number_or_swarm(text: str | None, robots: Sequence[int]) -> None:
     assert parse_robots(GAME, text) == tuple(robots)
 
 
@@ -51,7 +51,7 @@ def test_unknown_robots_are_refused(text: str) -> None:
 
 @pytest.mark.parametrize("absent_from", ["learning", "game"])
 def test_the_compared_games_equal_games_played_separately(absent_from: Any) -> None:
-    rows = contributions(GAME, [1, 5], [3, 4], absent_from, ("a", "b"), time_sud=conflicts_counted)
+    rows = contributions(GAME, [1, 5], [3, 4], absent_from, ("a", "b"), time_sud=count_conflicts)
     assert [(row["seed"], row["robot"]) for row in rows] == [(3, 1), (3, 5), (4, 1), (4, 5)]
     for row in rows:
         assert set(row) == set(SCHEMA.names)
@@ -60,10 +60,10 @@ def test_the_compared_games_equal_games_played_separately(absent_from: Any) -> N
         assert (row["swarm"], row["policy"]) == (swarm, "attack" if swarm == 1 else LEARNER)
         lacking = GAME.replace(absent=(row["robot"],), absent_from=absent_from)
         for game, ending in ((GAME, ""), (lacking, "_without")):
-            model = played(game, row["seed"])
+            model = play_game(game, row["seed"])
             assert row[f"run{ending}"] == digest(game, row["seed"])
             assert row[f"sud{ending}"] == model.results()[swarm - 1]["sud"]
-            assert row[f"time_sud{ending}"] == conflicts_counted(model.tables()["conflicts"], 2)[swarm - 1]
+            assert row[f"time_sud{ending}"] == count_conflicts(model.tables()["conflicts"], 2)[swarm - 1]
             assert row[f"duration{ending}"] == 60.0
             for others, k in (("mates", swarm), ("opponents", 3 - swarm)):
                 times = [each.times() for each in model.members[k - 1] if each.number != row["robot"]]
@@ -72,9 +72,9 @@ def test_the_compared_games_equal_games_played_separately(absent_from: Any) -> N
                 assert row[f"{others}_t_p{ending}"] == pytest.approx(0.1 * t_p)
 
 
-def test_the_reward_sums_the_robots_conflicts_of_the_measured_game() -> None:
+def test_the_reward_is_a_sum_over_conflicts_of_the_measured_game() -> None:
     rows = {row["robot"]: row for row in contributions(GAME, [0, 6], [1])}
-    table = played(GAME, 1).tables()["conflicts"]
+    table = play_game(GAME, 1).tables()["conflicts"]
     conflicts = [dict(zip(table, values, strict=True)) for values in zip(*table.values(), strict=True)]
     measured = [row for row in conflicts if row["phase"] == "game"]
     for robot, swarm, reward in ((0, 1, WLU()), (6, 2, IndividualUtility(delta=0.2))):
@@ -94,7 +94,7 @@ def test_the_reward_sums_the_robots_conflicts_of_the_measured_game() -> None:
             assert rows[robot][f"{name}_t_a_met"] == pytest.approx(met) != 0.0
 
 
-def test_in_games_of_equal_length_less_action_time_is_more_program_time() -> None:
+def test_action_and_program_time_have_the_same_sum_in_games_of_equal_length() -> None:
     for row in contributions(GAME, [2], [0, 1]):
         assert row["time_sud"] != row["time_sud"]  # NaN without a measure
         for others in ("mates", "opponents"):
@@ -118,10 +118,10 @@ def test_robots_outside_the_game_and_games_with_absent_robots_are_refused() -> N
 
 @pytest.mark.slow
 def test_the_number_of_workers_does_not_change_the_result() -> None:
-    measure = partial(contributions, GAME, [0, 5], [0, 1], time_sud=conflicts_counted)
+    measure = partial(contributions, GAME, [0, 5], [0, 1], time_sud=count_conflicts)
     two = measure(play=lambda runs: play_all(runs, 2, RECORD))
     assert measure() == two
-    assert measure() != contributions(GAME, [0, 5], [2, 3], time_sud=conflicts_counted)
+    assert measure() != contributions(GAME, [0, 5], [2, 3], time_sud=count_conflicts)
 
 
 def rows(**changes: Any) -> list[dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""Grids: conditions at every combination of values, and validation."""
+"""Grids: expansion to conditions at every combination of values, and validation."""
 
 import tomllib
 from typing import Any
@@ -44,13 +44,13 @@ def test_every_condition_is_expanded_at_every_point() -> None:
         ("rule.gamma", 0.5, ("mixed", "avoid+learner(rule='ucb(gamma=0.5)')")),
     ],
 )
-def test_fields_of_policies(field: str, value: str | float, policies: tuple[str, str]) -> None:
+def test_a_grid_sets_arguments_of_policies(field: str, value: str | float, policies: tuple[str, str]) -> None:
     before = {"S2.policy": ("avoid", "avoid"), "rule.gamma": ("mixed", "avoid+learner")}
     (condition,) = scenario({field: [value]}, *before.get(field, ("inter-learner",) * 2)).conditions
     assert tuple(swarm.policy for swarm in condition.swarms) == policies
 
 
-def test_fields_of_games_and_swarms() -> None:
+def test_a_grid_sets_fields_of_games_and_swarms() -> None:
     grid = {
         "parameters": ["argos"],
         "parameters.friction": [0.3],
@@ -85,14 +85,14 @@ def test_fields_of_games_and_swarms() -> None:
         ({"S2.policy": ["dance"]}, "policy='dance': must be one of"),
     ],
 )
-def test_a_bad_grid_is_refused_in_one_line(grid: dict[str, Any], message: str) -> None:
+def test_an_invalid_grid_is_refused_in_one_line(grid: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError) as refusal:
         scenario(grid)
     assert str(refusal.value).startswith(message)
     assert "\n" not in str(refusal.value)
 
 
-def test_names_must_differ_with_a_grid_too() -> None:
+def test_names_of_conditions_must_differ_with_a_grid() -> None:
     twice = (Condition(swarms=(AVOID,)), Condition(swarms=(AVOID, AVOID)))
     with pytest.raises(InputError, match="must have different names"):
         Scenario(id="own", title="Own", conditions=twice, densities=(6,), grid={"side": [2, 3]})

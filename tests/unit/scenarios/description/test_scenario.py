@@ -200,7 +200,7 @@ def test_a_scenario_finds_its_games_by_the_name_of_the_curve() -> None:
         scenario.game("", 6)
 
 
-def test_the_numbers_of_robots_that_a_scenario_allows() -> None:
+def test_a_scenario_allows_numbers_that_suit_all_its_conditions() -> None:
     assert [n for n in range(1, 40) if CATALOGUE["fig-7.12"].allows(n)] == [13, 26, 39]
 
 

@@ -1,4 +1,4 @@
-"""Lists in texts."""
+"""Comma-separated lists."""
 
 import pytest
 

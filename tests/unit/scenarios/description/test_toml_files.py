@@ -1,4 +1,4 @@
-"""Scenarios from files: read as they were shown, or refused with the place of the mistake."""
+"""Scenarios from TOML files: written scenarios can be read, and errors name file and field."""
 
 from pathlib import Path
 

@@ -77,7 +77,7 @@ def test_only_curves_of_the_same_game_share_a_run() -> None:
 
 
 @pytest.mark.parametrize(("random", "same"), [("c", "fig-6.4b"), ("d", "fig-6.4a")])
-def test_figures_with_random_stations_differ_from_others_in_nothing_else(random: str, same: str) -> None:
+def test_figures_with_random_stations_differ_only_in_their_stations(random: str, same: str) -> None:
     game = CATALOGUE[f"fig-6.13{random}"].game("", 26)
     assert game != CATALOGUE[same].game("", 26)
     assert game.replace(layout="symmetric") == CATALOGUE[same].game("", 26)

@@ -34,7 +34,7 @@ def make_row(table: str, **values: object) -> dict[str, object]:
 
 
 def make_outcome(run: Run) -> Outcome:
-    """Make up an outcome in which each learner learned about S1, actions not in alphabetical order."""
+    """Return a synthetic outcome. Each learner learned about S1; actions are not in alphabetical order."""
     swarms = [
         make_row("runs", swarm=k, policy=swarm.policy, pucks=5 + k)
         for k, swarm in enumerate(run.game.swarms, 1)

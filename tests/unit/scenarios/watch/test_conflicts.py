@@ -1,4 +1,4 @@
-"""Watched conflicts: the knowledge at their start follows from earlier rewards."""
+"""Conflicts of a run, with the knowledge that follows from earlier rewards."""
 
 import math
 from itertools import pairwise
@@ -26,7 +26,7 @@ def _run(policy: str, seed: int = 0, learning: float = 300.0, absent: tuple[int,
 
 
 @pytest.mark.parametrize("rule", ["ucb", "discounted-ucb(discount=0.9)", "greedy"])
-def test_the_last_knowledge_is_that_of_the_robots(rule: str) -> None:
+def test_knowledge_of_the_latest_conflicts_equals_the_bandits_of_the_robots(rule: str) -> None:
     # Robot 0 is absent, so the rows of the others differ from their numbers.
     run = _run(f"inter-learner(rule='{rule}')", absent=(0,))
     model = GameModel(run.game, seed=run.seed, record="conflicts")

@@ -82,7 +82,7 @@ def test_a_step_is_at_least_one_period_and_stops_at_the_end() -> None:
     assert player.time == 40.0
 
 
-def test_the_game_stops_where_the_next_conflict_begins() -> None:
+def test_the_game_stops_at_the_start_of_the_next_conflict() -> None:
     player = Player(LEARNING, 2)
     for _ in range(3):
         before = player.time
@@ -111,7 +111,7 @@ def test_latest_conflicts_are_newest_first() -> None:
 
 
 def test_a_long_history_is_thinned_and_keeps_its_first_sample(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(player_module, "MOST_SAMPLES", 6)
+    monkeypatch.setattr(player_module, "MAX_SAMPLES", 6)
     player = Player(_game(duration=100.0), 0)
     player.seek(100.0)
     times = [sample.time for sample in player.history]

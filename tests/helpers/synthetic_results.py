@@ -17,7 +17,7 @@ LEARNED = Quantity(measure="learned_attack", scenario="fig-6.4a", swarm=2)
 
 
 def noise(seeds: int, densities: int, scale: float = 1.0, seed: int = 0) -> Any:
-    """Return draws, (seeds, densities), whose mean is 0 at each density."""
+    """Return noise of shape (seeds, densities) with mean 0 at each density."""
     draws = np.random.default_rng(seed).normal(scale=scale, size=(seeds, densities))
     return draws - draws.mean(axis=0)
 
@@ -74,10 +74,12 @@ def learners(shares: Sequence[float], **rest: Any) -> Results:
 
 
 def verdict_on(claim: Claim, results: Results, confidence: float = 0.95) -> Verdict:
+    """Return the verdict on a claim."""
     return judge(Finding(id="it", statement="It is so.", claim=claim, confidence=confidence), results)
 
 
 def more(relation: str = ">", over: str = "each N", margin: float = 0.0, **rest: Any) -> Compare:
+    """Return the claim that S2 scores more than S1."""
     return Compare(**{"left": S2, "relation": relation, "right": S1, "over": over, "margin": margin, **rest})
 
 

@@ -1,6 +1,6 @@
-"""The page of `kswarms explore`, rendered without a browser, and ways to use its widgets.
+"""The page of `kswarms explore`, rendered without a browser, with functions that use its widgets.
 
-It needs the extra `explore`; tests that import it skip themselves without solara.
+It needs the extra `explore`; tests that import it are skipped without solara.
 """
 
 import time
@@ -21,8 +21,8 @@ def _App() -> None:  # noqa: N802  # a component
     page.Layout(children=[page.Page()])
 
 
-class Shown:
-    """The rendered page, with ways to find and use its widgets."""
+class RenderedPage:
+    """A rendered page. Its methods find and use widgets."""
 
     def __init__(self, session: Session) -> None:
         self.session = session
@@ -60,7 +60,7 @@ class Shown:
         """Write into a field and leave it."""
         field = self.find(ipyvuetify.TextField, text)
         field.v_model = str(value)
-        if field._event_handlers_map:  # otherwise it reports every letter
+        if field._event_handlers_map:  # other fields report every letter
             field.fire_event("focusout", {})
 
     def open(self, tab: int) -> None:
@@ -73,15 +73,15 @@ class Shown:
         return next(widget for widget in self.widgets() if hasattr(widget, "scene"))
 
 
-def showing(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str | Run], Shown]]:
-    """Yield a function that shows a page; close all pages afterwards."""
-    shown: list[Shown] = []
+def render_pages(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str | Run], RenderedPage]]:
+    """Yield a function that renders a page; close all pages afterwards."""
+    shown: list[RenderedPage] = []
     monkeypatch.setattr(page, "_DRAW_TIMEOUT", 0.02)  # no browser draws
 
-    def render(start: str | Run) -> Shown:
+    def render(start: str | Run) -> RenderedPage:
         session = Session(start)
         monkeypatch.setattr(page, "Session", lambda _: session)
-        shown.append(Shown(session))
+        shown.append(RenderedPage(session))
         return shown[-1]
 
     yield render
@@ -90,15 +90,15 @@ def showing(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str | Run], S
 
 
 def wait(condition: Callable[[], bool]) -> None:
-    """Wait until the thread of a page has done something."""
+    """Wait until a condition holds; fail after 10 s."""
     deadline = time.monotonic() + 10.0
     while not condition():
         assert time.monotonic() < deadline
         time.sleep(0.01)
 
 
-def unfold(shown: Shown, heading: str) -> None:
-    """Open the folded parts of the controls."""
+def unfold(shown: RenderedPage, heading: str) -> None:
+    """Expand the folded parts of the controls, and check that a heading is visible."""
     panels = [w for w in shown.widgets() if isinstance(w, ipyvuetify.ExpansionPanels)]
     for panel in panels:
         panel.v_model = 0
