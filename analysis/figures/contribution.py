@@ -1,4 +1,4 @@
-"""Scatter charts of the true contribution of robots over the reward that they computed."""
+"""Scatter charts of the true contribution of robots against their computed reward."""
 
 from pathlib import Path
 
@@ -22,7 +22,7 @@ from kswarms.analysis.tables.contribution import estimate_text
 
 
 def contribution_figure(rows: pd.DataFrame, title: str = "") -> Figure:
-    """Draw the true contribution of each robot over the reward that it computed.
+    """Draw the true contribution of each robot against its computed reward.
 
     `rows` come from `select_contributions`. Each of `MEASURES` has a panel. Markers with bars are
     the mean and interval of each robot; light points are single games.

@@ -141,8 +141,8 @@ def learned_over_n(cells: pd.DataFrame, title: str = "", conditions: Sequence[st
                 published = LineStyle(style.colour, ":", "x")
                 draw_line(axes, curve["n"], curve["published"], published, f"{name}, published")
         learned = set(cells["learned"])
-        names = {("attack",): "to attack", ("flight within",): "flight within"}
-        action = names.get(tuple(learned), "the action")
+        phrases = {("attack",): "to attack", ("flight within",): "flight within"}
+        action = phrases.get(tuple(learned), "the action")
         axes.set(xlabel="number of robots in all, N", ylabel=f"robots that learned {action} (%)")
         axes.set(xticks=sorted(set(cells["n"])), ylim=(-3, 103))
         legend_below(figure, "learned action; band: 95 % interval of the measured share")
@@ -168,7 +168,7 @@ def write_figures(
 
     Parameters
     ----------
-    source : Results, or as for `read_results`
+    source : Results, or a source for `read_results`
         Results directory of `kswarms run --out`, or outcomes of a sweep.
     out : Path
         Folder of the figures; it is created if it does not exist.

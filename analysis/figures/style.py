@@ -85,7 +85,7 @@ def draw_curves(axes: Axes, curves: Sequence[Curve], quantity: str, detail: bool
         seeds = rows["seed"].nunique()
         points = mean_by_group(rows, ["n"], quantity)
         if seeds > 1 and detail:
-            # Many seeds share a value: the more seeds, the lighter the points.
+            # Seeds can have equal values, so points are lighter the more seeds there are.
             alpha = min(0.25, max(0.05, 5 / seeds))
             axes.scatter(rows["n"] + shift, rows[quantity], s=9, color=style.colour, alpha=alpha, lw=0)
             axes.fill_between(points["n"], points["low"], points["high"], color=style.colour, alpha=0.2, lw=0)

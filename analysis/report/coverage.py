@@ -1,4 +1,4 @@
-"""Comparison of the games in the results with those that the scenarios plan."""
+"""Comparison of the games in the results with the planned games of the scenarios."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

@@ -31,7 +31,7 @@ _NETWORK_COLUMNS: Final = {
     "inter": ("time\ninter-swarm", ".2f"),
     "assortativity": ("assortativity\nof pairs", ".2f"),
     "assortativity_time": ("assortativity\nby time", ".2f"),
-    "chance": ("if all met\nalike", ".2f"),
+    "chance": ("assortativity\nif all met", ".2f"),
     "jams": ("jams", ".1f"),
     "jammed": ("robots\nin jams", ".1f"),
     "largest": ("largest\ncluster", ".1f"),
@@ -147,7 +147,7 @@ def _map_part(condition: RecordedCondition, measured: pd.DataFrame, arena_of: Ar
         part.id,
         heat_maps.heat_map_figure(measured, name, _common_arena(condition, arena_of)),
         f"Heat maps of the places where conflicts began in the measured game, all and by action, {name}.",
-        f"Places where conflicts began in the measured game, all and by action, with their numbers; {name}.",
+        f"Places where conflicts began in the measured game, and numbers of conflicts, by action, {name}.",
     )
     return part
 

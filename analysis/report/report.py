@@ -64,7 +64,7 @@ def build_report(
 
     Parameters
     ----------
-    source : Results, or as for `read_results`
+    source : Results, or a source for `read_results`
         Results directory of `kswarms run --out`, or a sweep, which has no recorded tables.
     plan : mapping of str to PlannedScenario, optional
         Scenarios by id, in their order in the report; other scenarios of the results follow.
