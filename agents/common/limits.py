@@ -3,7 +3,7 @@
 from typing import Final
 
 LONGEST_TIME: Final = 1e9  # duration of an action or a sampling period, mean of a wander leg
-LONGEST_DISTANCE: Final = 10_000.0  # side of the arena, range of a sense, gap at the start
+LONGEST_DISTANCE: Final = 10_000.0  # side of the arena, sensing range, gap at the start
 SHORTEST_PERIOD: Final = 1e-6  # control period, so that periods can be counted
 SLOWEST_TURN: Final = 1e-9  # turning rate (rad/s)
 LONGEST_STEP: Final = 0.8  # motion in a period, in radii, so that two robots do not pass through each other

@@ -42,7 +42,7 @@ def make_settings() -> list[Setting]:
 def play_conflicts(
     policy: Policy, setting: Setting, conflicts: int = 80, learning: bool = True
 ) -> list[tuple[Any, ...]]:
-    """Play conflicts that do not depend on the policy and check what its methods return.
+    """Play conflicts with fixed opponents and times, and check what the policy's methods return.
 
     Returns the choices as (opponent, action), each followed by the result of ``learn`` if there is one.
     """

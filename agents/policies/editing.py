@@ -9,7 +9,7 @@ from kswarms.agents.user_code.syntax import Call
 def with_learning(policy: str, part: str, text: str | None = None, /, **arguments: Any) -> str:
     """Return a policy text in which the ``reward`` or ``rule`` (`part`) of all learners is changed.
 
-    `text` is the new reward or rule. By default, only `arguments` of the current one change.
+    `text` is the new reward or rule. Without it, the current one is kept and its `arguments` are changed.
 
     Examples
     --------

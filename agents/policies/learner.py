@@ -126,7 +126,7 @@ class Learner:
         return reward, bandit.value(arm)
 
     def learned_action(self, opponent: int) -> Action:
-        """Return argmax Q for a swarm; flight if no arm was tried."""
+        """Return the action with the greatest Q against a swarm; flight if no arm was tried."""
         best = self.bandits[opponent].best()
         return self._flight if best is None else self.actions[best]
 

@@ -78,7 +78,7 @@ def default_action(actions: Sequence[Action]) -> Action:
 
 
 def best_actions(arms: Sequence[Mapping[str, Any]], actions: Sequence[Action]) -> dict[int, Action]:
-    """Return argmax Q for each opponent swarm (from 0); the default action if no arm was tried."""
+    """Return the action with the greatest Q for each opponent swarm (from 0), or the default action."""
     by_name = {action.name: action for action in actions}
     best: dict[int, Mapping[str, Any] | None] = {}
     for arm in arms:

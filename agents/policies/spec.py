@@ -179,7 +179,7 @@ def _parse_text(text: str) -> tuple[PolicySpec, ...]:
 def deal(policy: PolicyLike, size: int) -> list[PolicySpec]:
     """Return the policy of each of the `size` robots of a swarm.
 
-    Each policy gets an equal share of the robots, in order; remaining robots go to the first policies.
+    Each policy gets an equal share of the robots, in order; the first policies get one more if any remain.
 
     Examples
     --------

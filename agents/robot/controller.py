@@ -16,7 +16,7 @@ class Controller(NamedTuple):
     wall_half_angle: float  # as in `walls_met`
     radius: float  # of the body
     active_range: float  # a sensor that reads a smaller distance is active
-    escape_away: bool  # whether a turn at walls only needs to point away from the walls met
+    escape_away: bool  # whether `wall_escape` is ``away``
 
     def periods(self, seconds: float) -> int:
         """Return a duration in periods, rounded up, at least 1."""

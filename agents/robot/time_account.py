@@ -64,7 +64,7 @@ class TimedAgent(ContinuousSpaceAgent):
     def close(self, now: int, learn: bool = True) -> None:
         """Count the time up to `now` (periods) and close the open conflict.
 
-        The policy does not learn from a conflict that the end of a phase cuts off (`learn` is False).
+        `learn` is False at the end of a phase: the policy does not learn from an unfinished conflict.
         """
         elapsed = now - self._since
         self._since = now

@@ -27,7 +27,7 @@ _TOLERANCE: Final = 1e-9  # relative, for the equality of payoffs
 
 @dataclass(frozen=True, eq=False)
 class NormalForm:
-    """A two-player game, general-sum as within a swarm (Table 3.1).
+    """A two-player game in normal form. Within a swarm it is general-sum (Table 3.1).
 
     Parameters
     ----------

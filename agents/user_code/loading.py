@@ -39,7 +39,7 @@ def load_class(field: str, reference: str, base: type | None = None) -> type[Any
     if not inspect.isclass(found):
         classes = (key for key, value in vars(module).items() if inspect.isclass(value))
         own = ", ".join(key for key in classes if getattr(module, key).__module__ == module.__name__)
-        raise InputError(field, reference, f"{where} has no class {name}; there are {own or 'none'}")
+        raise InputError(field, reference, f"{where} has no class {name}; its classes: {own or 'none'}")
     if base is not None:
         if not issubclass(found, base):
             raise InputError(field, reference, f"must be a subclass of {base.__module__}.{base.__name__}")

@@ -23,7 +23,7 @@ _NEARER: Final = (0.96, 1.12)
 
 @dataclass(frozen=True)
 class Arena:
-    """Places in the arena, which must overlap neither each other nor the walls. The origin is the middle.
+    """Stations and bases, which must not overlap each other or the walls. The origin is the centre.
 
     Attributes
     ----------

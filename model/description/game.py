@@ -31,7 +31,7 @@ class Swarm(SwarmFields):
 
 
 class Game(GameFields):
-    """A game.
+    """Description of one game.
 
     Attributes
     ----------

@@ -60,7 +60,7 @@ def _sort_into_cells(m: Memory, cells: int) -> None:
         cell_start[cell + 1] += 1
     for cell in range(cells * cells):
         cell_start[cell + 1] += cell_start[cell]
-    # Filled from the back, so that the starts are right in the end and rows ascend in a cell.
+    # Fill each cell from its end, down to its start: then rows ascend in a cell.
     for k in range(n):
         i = n - 1 - k
         cell = cell_of(positions[i, 1], half, cells) * cells + cell_of(positions[i, 0], half, cells)

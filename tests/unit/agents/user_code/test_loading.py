@@ -72,8 +72,8 @@ INVALID = [
     ("no.py:X", "policy='no.py:X': must name a file; ", "no.py: No such file or directory"),
     ("my\0own.py:X", "policy='my\\x00own.py:X': must name a file (", ")"),
     ("learner(reward='my\\0own.py:X')", "policy.reward='my\\x00own.py:X': must name a file (", ")"),
-    ("own.py:Cautio", "policy='own.py:Cautio': own.py has no class Cautio; there are Cautious, Needy", ""),
-    ("own.py:NUMBER", "policy='own.py:NUMBER': own.py has no class NUMBER; there are", ""),
+    ("own.py:Cautio", "policy='own.py:Cautio': own.py has no class Cautio; its classes: Cautious, Needy", ""),
+    ("own.py:NUMBER", "policy='own.py:NUMBER': own.py has no class NUMBER; its classes:", ""),
     ("own.py:", "policy='own.py:': must be path/to/my_file.py:MyClass or package.module:MyClass", ""),
     (":Cautious", "policy=':Cautious': must be path/to", ""),
     ("own.py:A.B", "policy='own.py:A.B': must be path/to", ""),
@@ -104,7 +104,7 @@ INVALID = [
     ("learner(rule='own.py:Greater')", "policy.rule='own.py:Greater': factor must be ", "2.0"),
     ("own.py:Subclass(reward='x.py:Y')", "policy.reward='x.py:Y': must name a file", ""),
     ("nowhere.at_all:X", "policy='nowhere.at_all:X': importing nowhere.at_all", "named 'nowhere'"),
-    ("sys:X", "policy='sys:X': sys has no class X; there are none", ""),
+    ("sys:X", "policy='sys:X': sys has no class X; its classes: none", ""),
     ("json:JSONDecoder", "policy='json:JSONDecoder': is no policy: it lacks choose", ""),
 ]
 
