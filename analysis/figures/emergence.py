@@ -21,14 +21,9 @@ def choices_figure(conflicts: pd.DataFrame, title: str = "") -> Figure:
     Parameters
     ----------
     conflicts : pandas.DataFrame
-        Conflicts of one game.
+        Conflicts of one game; `InputError` if no robot learned.
     title : str
         Heading.
-
-    Raises
-    ------
-    InputError
-        No robot learned.
     """
     swarms, robots = choices(conflicts), choices(conflicts, by=["robot"])
     actions = sorted(set(swarms["action"]))
@@ -108,14 +103,9 @@ def preferences_figure(robots: pd.DataFrame, title: str = "") -> Figure:
     Parameters
     ----------
     robots : pandas.DataFrame
-        Rows of `robots.parquet`, of one game or several.
+        Rows of `robots.parquet`, of one game or several; `InputError` if no robot learned.
     title : str
         Heading.
-
-    Raises
-    ------
-    InputError
-        No robot learned.
     """
     rows = preferences(robots)
     robot = [name for name in ("run", "robot") if name in rows]

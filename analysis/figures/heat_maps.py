@@ -23,7 +23,8 @@ def heat_map_figure(conflicts: pd.DataFrame, title: str = "", arena: ArenaLayout
     Parameters
     ----------
     conflicts : pandas.DataFrame
-        Conflicts of one or several games: rows of `conflicts.parquet` or of a DataCollector's table.
+        Conflicts of one or several games: rows of `conflicts.parquet` or of a DataCollector's table. There
+        must be at least one.
     title : str
         Heading.
     arena : ArenaLayout, optional
@@ -34,11 +35,6 @@ def heat_map_figure(conflicts: pd.DataFrame, title: str = "", arena: ArenaLayout
     -------
     matplotlib.figure.Figure
         Panels with a common logarithmic scale; cells without conflicts are black.
-
-    Raises
-    ------
-    InputError
-        There is no conflict.
     """
     if conflicts.empty:
         raise InputError("conflicts", "no rows", "must hold at least one conflict")

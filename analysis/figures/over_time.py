@@ -17,14 +17,9 @@ def pucks_over_time(samples: pd.DataFrame, title: str = "") -> Figure:
     Parameters
     ----------
     samples : pandas.DataFrame
-        Samples of a model.
+        Samples of a model; `InputError` if a column is missing.
     title : str
         Heading.
-
-    Raises
-    ------
-    InputError
-        A column is missing.
     """
     return _over_time(samples, "pucks", "pucks deposited by the swarm", title)
 
