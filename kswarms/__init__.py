@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from kswarms.agents.policies.learner import Learner
     from kswarms.agents.policies.spec import make_policy
     from kswarms.agents.streams import Purpose
-    from kswarms.analysis.figures.files import save
+    from kswarms.analysis.figures.files import save_figure
     from kswarms.analysis.figures.over_n import figure_of
     from kswarms.analysis.findings import FINDINGS, Finding, judge, judge_all, read_findings
     from kswarms.analysis.results.records import read_conflicts
@@ -46,7 +46,7 @@ _MODULES: Final = {
     "agents.policies.learner": ("Learner",),
     "agents.policies.spec": ("make_policy",),
     "agents.streams": ("Purpose",),
-    "analysis.figures.files": ("save",),
+    "analysis.figures.files": ("save_figure",),
     "analysis.figures.over_n": ("figure_of",),
     "analysis.findings": ("FINDINGS", "Finding", "judge", "judge_all", "read_findings"),
     "analysis.results.records": ("read_conflicts",),
@@ -99,7 +99,7 @@ __all__ = [
     "read_findings",
     "read_results",
     "read_scenarios",
-    "save",
+    "save_figure",
 ]
 
 

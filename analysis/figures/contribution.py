@@ -6,7 +6,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from kswarms.analysis.figures.files import save
+from kswarms.analysis.figures.files import save_figure
 from kswarms.analysis.figures.style import LineStyle, heading, legend_below, new_figure, swarm_style
 from kswarms.analysis.measures.contribution import (
     MEASURES,
@@ -83,5 +83,5 @@ def write_contribution_figure(directory: Path, title: str = "", **selection: obj
     """
     rows = select_contributions(read_contributions(directory), **selection)
     path = directory / "figures" / f"contribution-{rows['scenario'].iloc[0]}.png"
-    save(contribution_figure(rows, title), path)
+    save_figure(contribution_figure(rows, title), path)
     return path

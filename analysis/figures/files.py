@@ -52,7 +52,7 @@ def encode_all(figure: Figure) -> EncodedFigure:
     return EncodedFigure(files, width, height)
 
 
-def save(figure: Figure, path: Path) -> None:
+def save_figure(figure: Figure, path: Path) -> None:
     """Write a figure to a PNG or SVG file.
 
     Parameters

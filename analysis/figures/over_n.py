@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.figures.files import save
+from kswarms.analysis.figures.files import save_figure
 from kswarms.analysis.figures.style import (
     LineStyle,
     condition_style,
@@ -193,5 +193,5 @@ def write_figures(
     for scenario in present if scenarios is None else scenarios:
         if scenario in present:
             paths.append(out / f"{scenario}.png")
-            save(figure_of(runs, scenario, (titles or {}).get(scenario, "")), paths[-1])
+            save_figure(figure_of(runs, scenario, (titles or {}).get(scenario, "")), paths[-1])
     return paths

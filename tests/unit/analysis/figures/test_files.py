@@ -6,7 +6,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.figures.files import encode, encode_all, save
+from kswarms.analysis.figures.files import encode, encode_all, save_figure
 
 
 def figure(height: int = 3) -> Figure:
@@ -33,13 +33,13 @@ def test_the_smallest_format_has_the_fewest_bytes() -> None:
 
 
 def test_a_figure_is_saved_in_the_format_of_the_suffix(tmp_path: Path) -> None:
-    save(figure(), tmp_path / "figures" / "a.SVG")
+    save_figure(figure(), tmp_path / "figures" / "a.SVG")
     assert (tmp_path / "figures" / "a.SVG").read_bytes() == encode(figure(), "svg")
 
 
 def test_an_interrupted_write_leaves_the_old_figure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "a.png"
-    save(figure(), path)
+    save_figure(figure(), path)
     old = path.read_bytes()
 
     def full_disk(part: Path, content: bytes) -> None:
@@ -49,7 +49,7 @@ def test_an_interrupted_write_leaves_the_old_figure(tmp_path: Path, monkeypatch:
 
     monkeypatch.setattr(Path, "write_bytes", full_disk)
     with pytest.raises(InputError, match=r"must be a writable file \(No space left on device\)"):
-        save(figure(2), path)
+        save_figure(figure(2), path)
     assert path.read_bytes() == old
     assert list(tmp_path.iterdir()) == [path]
 
@@ -57,4 +57,4 @@ def test_an_interrupted_write_leaves_the_old_figure(tmp_path: Path, monkeypatch:
 def test_a_folder_that_cannot_be_created_is_an_error(tmp_path: Path) -> None:
     (tmp_path / "figures").write_text("a file")
     with pytest.raises(InputError, match="must be a writable file"):
-        save(figure(), tmp_path / "figures" / "a.png")
+        save_figure(figure(), tmp_path / "figures" / "a.png")
