@@ -38,7 +38,7 @@ def controller_constants(game: Game) -> Controller:
 def place_robots(game: Game, arena: Arena, seed: int, random: Random) -> tuple[ContinuousSpace, RobotStates]:
     """Place the bodies of all robots, at rest; return Mesa's space and the state arrays.
 
-    Both use the same array of positions. The space has no agents yet. Nothing uses `random`.
+    Both use the same array of positions. The space has no agents yet. `random` is for Mesa and stays unused.
     """
     half, body, parameters = arena.half, game.body, game.parameters
     positions, headings = start_poses(
