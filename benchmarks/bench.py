@@ -22,7 +22,7 @@ from kswarms.scenarios.study.study import Study
 
 MAX_TIMES_BARE: Final = 5.0  # times the CPU time of a bare SimPy loop
 MIN_THROUGHPUT: Final = 80_000  # robot-seconds per CPU second
-MIN_LEARNING_THROUGHPUT: Final = 60_000
+MIN_LEARNING_THROUGHPUT: Final = 60_000  # the same, for learners
 MAX_GROWTH: Final = 1.5  # of the cost at the largest N, relative to the smallest
 MAX_MEMORY: Final = 300  # MB
 MAX_SECONDS_TO_GAME: Final = 5.0

@@ -169,7 +169,7 @@ def _search(
 ) -> Generator[dict[str, Any], None, None]:
     """Yield the generations of the search."""
     cells = [cell for cell in target if cell[1] in setup.densities]
-    wanted = np.array([target[cell] for cell in cells])
+    published = np.array([target[cell] for cell in cells])
     rng = np.random.default_rng(FIT_SEED)
     options = {
         "bounds": [0.0, 1.0],
@@ -183,7 +183,7 @@ def _search(
         positions = strategy.ask()
         candidates = [to_candidate(setup.free, position) for position in positions]
         measured = shares.measure(candidates, cells, range(first_seed, first_seed + setup.seeds))
-        errors = [float(error_of(each.mean(axis=1), wanted)) for each in measured]
+        errors = [float(error_of(each.mean(axis=1), published)) for each in measured]
         strategy.tell(positions, errors)
         yield {
             "first_seed": first_seed,

@@ -21,10 +21,10 @@ class SourceTable(NamedTuple):
 
 
 TABLES: Final = {
-    "table-6.1": SourceTable("Learned to attack, of figures 6.4a and 6.4b", ("fig-6.4a", "fig-6.4b")),
-    "table-6.2": SourceTable("Learned to attack, and to flee within the swarm, of figure 6.8", ("fig-6.8",)),
-    "table-6.3": SourceTable("Learned to attack, of figure 6.12", ("fig-6.12",)),
-    "table-7.1": SourceTable("Learned to attack, of figure 7.4", ("fig-7.4",)),
-    "table-7.2": SourceTable("Learned to attack, of figures 7.16a and 7.16b", ("fig-7.16a", "fig-7.16b")),
+    "table-6.1": SourceTable("Learned to attack: figures 6.4a and 6.4b", ("fig-6.4a", "fig-6.4b")),
+    "table-6.2": SourceTable("Learned to attack, and to flee within the swarm: figure 6.8", ("fig-6.8",)),
+    "table-6.3": SourceTable("Learned to attack: figure 6.12", ("fig-6.12",)),
+    "table-7.1": SourceTable("Learned to attack: figure 7.4", ("fig-7.4",)),
+    "table-7.2": SourceTable("Learned to attack: figures 7.16a and 7.16b", ("fig-7.16a", "fig-7.16b")),
 }
 """Tables by id, in the order of the source."""

@@ -30,7 +30,7 @@ FOUR_ACTIONS: Final = (
     Action(name="flight-1000ms", direction=AWAY, duration=1.0),
     Action(name="fight-1000ms", direction=TOWARDS, duration=1.0),
 )
-# A flight of 50 ms needs a control period as short (section 2.6).
+# A flight of 50 ms needs a control period of at most 50 ms (section 2.6).
 ALONE: Final[dict[str, Any]] = {"actions": FOUR_ACTIONS, "parameters": "fitted, period=0.05"}
 
 # fmt: off

@@ -48,12 +48,12 @@ DISADVANTAGED: Final = (
     Scenario(id="fig-7.7b", title="Fast mixed against attack", conditions=curve(FAST_MIXED, ATTACK)),
     Scenario(id="fig-7.8", title="Fast mixed against inter-learner of several Δ, and against avoid",
              conditions=curves(_by_delta(FAST_MIXED, *DELTAS) | {"avoid": (FAST_MIXED, AVOID)})),
-    Scenario(id="fig-7.10", title="Fast avoid and fast aggressive, each half as many, against inter-learner "
-             "of several Δ and avoid",
+    Scenario(id="fig-7.10", title="Fast avoid and fast aggressive, each half the size of S2, against "
+             "inter-learner of several Δ, and against avoid",
              conditions=curves({f"delta={delta}": _three(_learner(delta)) for delta in DELTAS}
                                | {"avoid": _three(AVOID)}, multiple_of=2)),
-    Scenario(id="fig-7.11", title="Fast avoid and fast aggressive, each half as many, against inter-learner "
-             "of several Δ for S1 alone and avoid",
+    Scenario(id="fig-7.11", title="Fast avoid and fast aggressive, each half the size of S2, against "
+             "inter-learner of several Δ about S1, and against avoid",
              conditions=curves({f"delta={delta}": _three(_learner({1: delta, 3: 0.125})) for delta in DELTAS}
                                | {"avoid": _three(AVOID)}, multiple_of=2)),
     Scenario(id="fig-7.12", title="Avoid against avoid, seven robots to six", densities=SEVEN_TO_SIX,

@@ -33,7 +33,7 @@ def contribution(
     first_seed: FirstSeed = 0,
     absent_from: Annotated[
         Literal["learning", "game"],
-        typer.Option(help="Robot absent from learning and game, or from the measured game only."),
+        typer.Option(help="Phases without the robot: learning and game, or the measured game only."),
     ] = "learning",
     jobs: Jobs = CPUS,
     out: Annotated[

@@ -22,11 +22,13 @@ def status(directory: Directory) -> None:
     with Ledger(directory / LEDGER_FILE) as ledger:
         headings = ("scenario", "done", "failed", "missing", "CPU time")
         rows = [(name, *_cells(counts)) for name, counts in ledger.points_by_scenario().items()]
-        rows.append(("runs, each once", *_cells(ledger.runs_by_status())))
+        rows.append(("unique runs", *_cells(ledger.runs_by_status())))
         print_columns([headings, *rows], left=(0,))
         typer.echo()
         sessions = ledger.sessions()
-        typer.echo(f"sessions: {len(sessions)}, the first of {sessions[0]['started'] if sessions else '–'}")
+        typer.echo(
+            f"sessions: {len(sessions)}, first: {sessions[0]['started'] if sessions else '–'}"
+        )
         for code, runs in ledger.runs_by_code().items():
             typer.echo(f"played by: kswarms {code}, {runs} runs")
         if holder := lock_holder(directory):

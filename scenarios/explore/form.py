@@ -20,7 +20,7 @@ class Form(NamedTuple):
 
     swarms: tuple[dict[str, Any], ...]  # fields of a `SwarmRule` for each swarm
     fields: dict[str, Any]  # fields of a `Condition`: parameters as text, body by name
-    n: int  # robots in all
+    n: int  # number of robots
     seed: int
     absent: tuple[int, ...] = ()
     absent_from: Literal["learning", "game"] = "learning"
@@ -54,7 +54,7 @@ class Form(NamedTuple):
     def game(self) -> Game:
         """Return the game; raise `InputError` if a value is invalid."""
         if isinstance(self.seed, bool) or not isinstance(self.seed, int) or self.seed < 0:
-            raise InputError("seed", self.seed, "must be a whole number ≥ 0")
+            raise InputError("seed", self.seed, "must be an integer ≥ 0")
         rules = tuple(SwarmRule(**swarm) for swarm in self.swarms)
         game = Condition(swarms=rules, **self.fields).game(self.n)
         return game.replace(absent=self.absent, absent_from=self.absent_from) if self.absent else game

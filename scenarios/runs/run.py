@@ -39,7 +39,7 @@ class Run:
 
     @property
     def n(self) -> int:
-        """Robots in all."""
+        """Number of robots."""
         return self.game.size
 
     @property

@@ -1,1 +1,1 @@
-"""A study: a directory of results that resumes, its ledger and its tables."""
+"""A study: a results directory that can be resumed, with its ledger and its tables."""
