@@ -91,7 +91,7 @@ def test_status_shows_failed_runs_and_the_commands_that_replay_them(
     assert invoke(["status", "my results"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[1].split()[:4] == ["tiny", "6", "2", "0"]
-    assert lines[2].split()[:6] == ["runs,", "each", "once", "6", "2", "0"]
+    assert lines[2].split()[:5] == ["unique", "runs", "6", "2", "0"]
     failed = lines.index("failed: tiny learner, n=6, seed=0: ZeroDivisionError: no robot is left")
     assert lines[failed + 2] == '  raise ZeroDivisionError("no robot\\nis left")'
     again, command = lines[failed + 3].split(": ")
