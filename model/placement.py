@@ -17,10 +17,10 @@ from kswarms.agents.streams import Purpose, stream
 from kswarms.model.kernel.arrays import PAIR, WORK
 from kswarms.model.kernel.relaxation import TOLERANCE, relax
 
-_FEW: Final = 16
-"""Number of places that are drawn first and tested one by one, which is fastest in an empty arena."""
-_BATCHES: Final = (256, 4096, 4096)
-"""Sizes of the batches of places that are tested together afterwards."""
+_FEW: Final = (8, 56)
+"""Numbers of places that are drawn first and tested one by one, which is fastest if many places are free."""
+_BATCHES: Final = (208, 4096, 4096)
+"""Sizes of the batches of places that are tested together afterwards. The total decides places in a crowd."""
 
 
 def start_poses(
@@ -55,17 +55,19 @@ def _draw_place(
 
     A place is free if its squared distance from all taken places is at least `min_squared` (m²).
     """
-    for x, y in rng.uniform(-limit, limit, size=(_FEW, 2)).tolist():
-        for other_x, other_y in taken:
-            dx, dy = x - other_x, y - other_y
-            if dx * dx + dy * dy < min_squared:
-                break
-        else:
-            return (x, y), True
+    for few in _FEW:
+        for x, y in rng.uniform(-limit, limit, size=(few, 2)).tolist():
+            for other_x, other_y in taken:
+                dx, dy = x - other_x, y - other_y
+                if dx * dx + dy * dy < min_squared:
+                    break
+            else:
+                return (x, y), True
     others = np.array(taken)
     for batch in _BATCHES:
         places = rng.uniform(-limit, limit, size=(batch, 2))
-        room = ((places[:, None, :] - others) ** 2).sum(axis=2).min(axis=1)
+        dx, dy = (np.subtract.outer(places[:, axis], others[:, axis]) for axis in (0, 1))
+        room = (dx * dx + dy * dy).min(axis=1)
         free = np.flatnonzero(room >= min_squared)
         if len(free) > 0:
             return tuple(places[free[0]].tolist()), True
