@@ -71,7 +71,7 @@ jams_figure(jams(conflicts), "36 robots, S1 avoids, S2 attacks")
 # those with each action.
 
 # %%
-heat_map_figure(conflicts, "36 robots, S1 avoids, S2 attacks", places=model.arena)
+heat_map_figure(conflicts, "36 robots, S1 avoids, S2 attacks", arena=model.arena)
 
 # %% [markdown]
 # ## What changes with the number of robots
