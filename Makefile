@@ -23,7 +23,7 @@ explore: $(TEST)  ## open a page to watch, change and inspect games
 	$(BIN)/kswarms explore
 
 test: lint types docs  ## run all checks: lint, types, documentation, tests with coverage
-	$(BIN)/python -m pytest -n auto --dist worksteal --cov --cov-report=term-missing:skip-covered
+	$(BIN)/python -m pytest -n auto --dist loadfile --cov --cov-report=term-missing:skip-covered
 
 lint: $(TEST)  ## check style (ruff) and the direction of imports (import-linter)
 	$(BIN)/ruff check .
@@ -40,7 +40,7 @@ bench: $(RUN)  ## measure speed, memory and start-up
 	$(BIN)/python -m benchmarks.report
 
 full: $(TEST)  ## run all tests with the full numbers of seeds (long)
-	$(BIN)/python -m pytest -n auto --dist worksteal -m "full or not full" -o faulthandler_timeout=0
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "full or not full" -o faulthandler_timeout=0
 
 clean:  ## remove the environment and all caches; keep results/
 	rm -rf $(VENV) build dist site .pytest_cache .hypothesis .mypy_cache .ruff_cache .coverage .coverage.* htmlcov

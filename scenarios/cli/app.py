@@ -61,7 +61,7 @@ app = typer.Typer(
 for _name, (_, _, _short) in COMMANDS.items():
     app.command(_name, short_help=_short)(
         lambda: None
-    )  # a placeholder; `LazyGroup.resolve_command` loads the command
+    )  # lists the command; `LazyGroup.resolve_command` loads it
 
 
 def main() -> None:
