@@ -7,6 +7,8 @@ BIN := $(VENV)/bin
 RUN := $(VENV)/.installed
 TEST := $(VENV)/.installed-test
 DEMO := results/demo
+# Tests that play many games: measuring coverage would double their time.
+GAMES := tests/outcomes tests/baseline
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:  # two installations into one environment would collide
@@ -23,7 +25,8 @@ explore: $(TEST)  ## open a page to watch, change and inspect games
 	$(BIN)/kswarms explore
 
 test: lint types docs  ## run all checks: lint, types, documentation, tests with coverage
-	$(BIN)/python -m pytest -n auto --dist loadfile --cov --cov-report=term-missing:skip-covered
+	$(BIN)/python -m pytest -n auto --dist loadfile --cov --cov-report=term-missing:skip-covered $(GAMES:%=--ignore=%)
+	$(BIN)/python -m pytest -n auto --dist loadfile $(GAMES)
 
 lint: $(TEST)  ## check style (ruff) and the direction of imports (import-linter)
 	$(BIN)/ruff check .

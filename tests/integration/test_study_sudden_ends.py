@@ -72,7 +72,7 @@ def test_ctrl_c_keeps_finished_runs(
     before_games(interrupt)
     assert invoke(RUN) == 130
     first, last = capsys.readouterr().err.splitlines()
-    assert first.startswith("kswarms: results keeps ")
+    assert first == "kswarms: results has the finished runs; repeat the command to resume"
     assert last == "kswarms: interrupted"
     assert read_sessions()[0]["status"] == "stopped: KeyboardInterrupt"
     assert len(finished_runs()) == 7
