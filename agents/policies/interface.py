@@ -1,6 +1,6 @@
 """Interface of policies (specification, section 2.4).
 
-A policy chooses an action at each conflict, given the opponent's swarm-ID. A learning policy is also told the
+A policy chooses an action at each conflict from the opponent's swarm-ID. A learning policy also receives the
 outcome of each conflict. A user-defined policy is a class with the methods of `Policy`, and those of
 `LearningPolicy` if it learns; it needs no base class.
 """
