@@ -4,6 +4,8 @@ import tomllib
 from pathlib import Path
 
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.input_files import read_input_file
+from kswarms.agents.common.limits import MAX_TEXT_FILE
 from kswarms.scenarios.description.scenario import Scenario
 
 
@@ -15,11 +17,11 @@ def read_scenarios(path: Path) -> list[Scenario]:
     InputError
         If the file cannot be read, or a scenario is invalid.
     """
+    source = read_input_file("id", path, MAX_TEXT_FILE)
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError, RecursionError) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise InputError("id", str(path), f"must be a TOML file ({reason})") from error
+        content = tomllib.loads(source.decode("utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        raise InputError("id", str(path), f"must be a TOML file ({error})") from error
     scenarios = content.get("scenarios", content)
     if not isinstance(scenarios, list):
         return [_make_scenario(path.name, content)]

@@ -83,9 +83,9 @@ def test_an_error_names_the_file_and_the_field(before: str, after: str, message:
 
 def test_a_file_that_is_not_text_is_refused(tmp_path: Path) -> None:
     (tmp_path / "noise.toml").write_bytes(b"\xff\xfe\x00")
-    for path in (tmp_path / "noise.toml", tmp_path / "absent.toml", tmp_path):
-        with pytest.raises(InputError, match="must be a TOML file"):
-            read_scenarios(path)
+    for path, rule in (("noise.toml", "a TOML file"), ("absent.toml", "a readable file"), (".", "a regular")):
+        with pytest.raises(InputError, match=f"must be {rule}"):
+            read_scenarios(tmp_path / path)
 
 
 def test_a_byte_order_mark_is_accepted(tmp_path: Path) -> None:

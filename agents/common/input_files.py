@@ -1,0 +1,58 @@
+"""Reading of files that others may have made: regular files of bounded size only."""
+
+import os
+import stat
+from pathlib import Path
+
+from kswarms.agents.common.errors import InputError
+
+
+def read_input_file(field: str, path: Path, limit: int) -> bytes:
+    """Return the content of a regular file.
+
+    A device, a named pipe or a directory is never opened, so reading neither blocks nor lasts for ever.
+
+    Parameters
+    ----------
+    field : str
+        Name of the argument or option, for the error.
+    limit : int
+        Maximum size (bytes); `kswarms.agents.common.limits` has the limits.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, unreadable, too large or no regular file.
+    """
+    require_regular_file(field, path)
+    try:
+        # Non-blocking, in case a named pipe has replaced the file since the check.
+        descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NONBLOCK | os.O_NOCTTY)
+        with os.fdopen(descriptor, "rb") as file:
+            _require_regular(field, path, os.fstat(descriptor))
+            content = file.read(limit + 1)
+    except OSError as error:
+        raise _unreadable(field, path, error.strerror) from error
+    if len(content) > limit:
+        raise InputError(field, str(path), f"must be a file of at most {limit:,} bytes")
+    return content
+
+
+def require_regular_file(field: str, path: Path) -> None:
+    """Raise an `InputError` unless a path leads to a regular file."""
+    try:
+        _require_regular(field, path, path.stat())
+    except OSError as error:
+        raise _unreadable(field, path, error.strerror) from error
+    except ValueError as error:  # a NUL character in the name
+        raise _unreadable(field, path, error) from error
+
+
+def _require_regular(field: str, path: Path, found: os.stat_result) -> None:
+    if not stat.S_ISREG(found.st_mode):
+        kind = "a directory" if stat.S_ISDIR(found.st_mode) else "a device, pipe or socket"
+        raise InputError(field, str(path), f"must be a regular file, not {kind}")
+
+
+def _unreadable(field: str, path: Path, reason: object) -> InputError:
+    return InputError(field, str(path), f"must be a readable file ({reason})")
