@@ -38,7 +38,7 @@ pd.DataFrame(model.results())[["swarm", "policy", "pucks", "conflicts_inter"]]
 # ## Check it
 #
 # `kswarms.agents.conformance` has the checks that every policy, reward and rule must pass: the same seed
-# gives the same choices, robots share no state, copies behave alike, and others. A failing check says what
+# gives the same choices, robots share no state, copies behave alike, and so on. A failing check says what
 # is wrong.
 
 # %%

@@ -74,7 +74,7 @@ robots.head(3)
 
 # %% [markdown]
 # `u_1` and `u_2` are a robot's utilities from meetings with S1 and with S2, `utility` is their sum (Eq.
-# 3.3), and `wlu` its Wonderful Life Utility from times alone (Eq. 4.14). The sums by swarm:
+# 3.3), and `wlu` its Wonderful Life Utility W from times alone (Eq. 4.14). The sums by swarm:
 
 # %%
 utilities_by_swarm(robots)

@@ -54,7 +54,7 @@ app = typer.Typer(
     cls=LazyGroup,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
-    help="Competing swarms of foraging robots: play the scenarios of the catalogue and see who wins.",
+    help="Simulate competing swarms of foraging robots and analyse the results.",
     epilog="Example: kswarms run fig-6.1a --densities 6,30 --seeds 3\n\n"
     "Exit status: 0 done, 1 failed, 2 bad input, 130 interrupted.",
 )

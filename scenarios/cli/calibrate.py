@@ -28,11 +28,11 @@ def calibrate(
         ),
     ] = None,
     seeds: Annotated[
-        int, typer.Option(help="Games for each candidate and cell of the table, at least 1.")
+        int, typer.Option(help="Games for each point and cell of the table, at least 1.")
     ] = 4,
     generations: Annotated[int, typer.Option(help="Generations of the search, at least 1.")] = 25,
     population: Annotated[
-        int, typer.Option(help="Candidates in a generation, at least 4; 0 for the default of CMA-ES.")
+        int, typer.Option(help="Points (sets of values) in a generation, at least 4; 0: CMA-ES default.")
     ] = 0,
     validation_seeds: Annotated[
         int, typer.Option(help="Games for each cell in the validation, at least 6.")

@@ -40,7 +40,7 @@ def contribution(
         Path, typer.Option(parser=parse_directory, metavar="DIR", help="Results directory.")
     ] = Path("results"),
 ) -> None:
-    """Measure contributions of robots: repeat games without each robot, and compare with its rewards.
+    """Measure what robots contribute: repeat each game without the robot, and compare with its reward.
 
     Example: kswarms contribution fig-6.4b --n 16 --robots S2 --seeds 5
     """
