@@ -1,1 +1,1 @@
-"""Shared by all packages: errors, validated data, atomic files, compilation, limits, columns of tables."""
+"""Shared by all packages: errors, validated data, files, compilation, limits, columns of tables, quoting."""
