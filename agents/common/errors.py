@@ -1,10 +1,54 @@
 """The error for invalid input."""
 
+import re
+import reprlib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Self
+from typing import Final, Self
 
 from pydantic import ValidationError
+
+LONGEST_VALUE: Final = 120
+"""Maximum number of characters of a value or a field in a message."""
+_LONGEST_RULE: Final = 2000
+"""Maximum number of characters of a rule, which may list names."""
+
+
+class _Shortener(reprlib.Repr):
+    """`repr` that looks only at the beginning and the end of long values."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxstring = self.maxlong = self.maxother = LONGEST_VALUE
+
+    def repr_int(self, value: int, level: int) -> str:
+        """Python refuses to print very large integers."""
+        bits = value.bit_length()
+        return super().repr_int(value, level) if bits <= 2000 else f"<integer of {bits} bits>"
+
+
+_SHORTENER: Final = _Shortener()
+
+
+def shorten(value: object) -> str:
+    """Return `repr(value)` on one line, cut to `LONGEST_VALUE` characters, even if `repr` fails."""
+    try:
+        text = _SHORTENER.repr(value)
+    except Exception:  # noqa: BLE001  # any error of a user's `__repr__`
+        text = f"<{type(value).__name__}>"
+    return _cut(printable(text))
+
+
+def printable(text: str) -> str:
+    """Return a text as one line: line breaks become spaces, other control characters escape sequences."""
+    text = re.sub(r"\s*[\n\r]\s*", " ", text)
+    return text if text.isprintable() else "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
+
+
+def _cut(text: str) -> str:
+    """Cut the middle of a text that is longer than `LONGEST_VALUE`."""
+    half = (LONGEST_VALUE - 3) // 2
+    return text if len(text) <= LONGEST_VALUE else f"{text[:half]}...{text[-half:]}"
 
 
 class InputError(ValueError):
@@ -18,6 +62,10 @@ class InputError(ValueError):
         The invalid value.
     allowed : str
         The rule that the value breaks, for example ``must be greater than 0``.
+
+    Notes
+    -----
+    The text of the error is one line. It shows long fields and values shortened; the attributes are complete.
     """
 
     __module__ = "kswarms"  # the public name, shown in tracebacks
@@ -30,7 +78,8 @@ class InputError(ValueError):
         self.allowed = allowed
 
     def __str__(self) -> str:
-        return f"{self.field}={self.value!r}: {self.allowed}"
+        rule = printable(str(self.allowed))[:_LONGEST_RULE]
+        return f"{_cut(printable(str(self.field)))}={shorten(self.value)}: {rule}"
 
     @classmethod
     @contextmanager

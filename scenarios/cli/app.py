@@ -5,15 +5,17 @@ A command's module is imported when the command is called, so that help and shel
 
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
 from typing import Annotated, Any, Final
 
 import typer
-from pydantic import ValidationError
 from typer.core import TyperGroup
 
 from kswarms import __version__
-from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.errors import InputError, printable
+from kswarms.scenarios.cli.parser_errors import to_input_error
+from kswarms.scenarios.cli.terminal import flush_output, prepare_streams
 from kswarms.scenarios.runs.errors import RunError
 
 INTERRUPTED: Final = 130
@@ -39,6 +41,8 @@ class LazyGroup(TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
         """Return name, command and remaining arguments."""
+        if not (args[0] in COMMANDS or args[0].startswith("-") or ctx.resilient_parsing):
+            raise InputError("command", args[0], f"must be one of {', '.join(COMMANDS)}")
         name, command, rest = super().resolve_command(ctx, args)
         return name, _load(name) if name else command, rest
 
@@ -66,7 +70,11 @@ for _name, (_, _, _short) in COMMANDS.items():
 
 def main() -> None:
     """Run the command line and exit with its status."""
-    sys.exit(invoke())
+    prepare_streams()
+    status = invoke()
+    if error := flush_output():
+        status = status or _print_error(str(error), 1)
+    sys.exit(status)
 
 
 def invoke(arguments: Sequence[str] | None = None) -> int:
@@ -79,34 +87,23 @@ def invoke(arguments: Sequence[str] | None = None) -> int:
         code: int | None = app(words, prog_name="kswarms", standalone_mode=False, obj=("kswarms", *words))
     except InputError as error:
         return _print_error(str(error), 2)
+    except BrokenPipeError as error:  # no message if the reader of the output ended, such as `head`
+        return 1 if flush_output() else _print_error(str(error), 1)
     except OSError as error:
         return _print_error(str(error), 1)
     except RunError as error:
         typer.echo(error.trace, err=True)
         return _print_error(str(error), 1)
-    except typer.BadParameter as error:
-        return _print_error(_describe(error), 2)
-    except typer.TyperException as error:  # an unknown command or option, for example
-        return _print_error(error.format_message(), error.exit_code)
+    except typer.TyperException as error:
+        return _print_error(str(to_input_error(error, words)), error.exit_code)
     if code == INTERRUPTED:
         return _print_error("interrupted", code)
     return code or 0
 
 
-def _describe(error: typer.BadParameter) -> str:
-    """Return option, value and rule in the format of `InputError`; the message of typer lacks the value."""
-    cause = error.__cause__
-    if not isinstance(cause, ValidationError) or error.param is None:
-        return error.format_message()
-    found = InputError.from_validation(cause, ())
-    field = error.param.opts[-1].lstrip("-").replace("-", "_")
-    # For a choice, typer's rule repeats the value.
-    allowed = found.allowed.removeprefix(f"Value error, {found.value!r} ").removesuffix(".")
-    return str(InputError(field, found.value, allowed))
-
-
 def _print_error(message: str, status: int) -> int:
-    typer.echo(f"kswarms: {' '.join(message.split())}", err=True)
+    with suppress(OSError):  # standard error may be closed, too
+        typer.echo(f"kswarms: {printable(message)}", err=True)
     return status
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from kswarms.agents.common.errors import shorten
 from kswarms.scenarios.cli import invoke
 
 pytestmark = pytest.mark.usefixtures("empty_directory")
@@ -29,8 +30,8 @@ swarms = [{ policy = "attack" }, { policy = "attack" }]
     ("words", "error"),
     [
         ("run fig-6.1a --seeds 1000001", "seeds=1000001: must be less than or equal to 1000000"),
-        (f"run fig-6.1a --densities 6,{10**400}", f"n={10**400}: must be at most 1000000 (fig-6.1a)"),
-        (f"film fig-6.1a --n {10**400}", f"n={10**400}: must be at most 1000000"),
+        (f"run fig-6.1a --densities 6,{10**400}", f"n={shorten(10**400)}: must be at most 1000000"),
+        (f"film fig-6.1a --n {10**400}", f"n={shorten(10**400)}: must be at most 1000000"),
         ("run fig-6.1a --out=", "out='': must be the path of a directory"),
         ("contribution fig-6.1a --n 6 --out=", "out='': must be the path of a directory"),
         ("calibrate --out=", "out='': must be the path of a directory"),
