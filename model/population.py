@@ -6,6 +6,7 @@ from random import Random
 import numpy as np
 from mesa.experimental.continuous_space import ContinuousSpace
 
+from kswarms.agents.conformance.trial import try_policy
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.spec import deal, parse_policies
 from kswarms.agents.robot.controller import Controller
@@ -57,7 +58,11 @@ def make_robots(model: Host, game: Game, seed: int) -> list[Krembot]:
     actions, swarms = game.action_set, len(game.swarms)
     robots: list[Krembot] = []
     for k, swarm in enumerate(game.swarms):
-        factories = {spec: spec.factory(actions) for spec in parse_policies(swarm.policy)}
+        specs = parse_policies(swarm.policy)
+        for spec in specs:
+            if spec.runs_user_code:
+                try_policy(spec, Setting(k, swarms, actions, Streams(0, 0)))
+        factories = {spec: spec.factory(actions) for spec in specs}
         for place, spec in enumerate(deal(swarm.policy, swarm.size)):
             number = len(robots)
             streams = Streams(seed, number)

@@ -18,4 +18,5 @@ LONGEST_NAME: Final = 100  # characters of a name, which files are named after
 LONGEST_TITLE: Final = 200  # characters of a title
 MAX_JOBS: Final = 1024  # worker processes
 MAX_TEXT_FILE: Final = 10_000_000  # bytes of a TOML or Python file
+MAX_CODE_FILES: Final = 10_000  # files of a package with user-defined code
 MAX_JSON_FILE: Final = 100_000_000  # bytes of a JSON file: learned policies, measured shares, manifest

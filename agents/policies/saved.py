@@ -7,11 +7,14 @@ from pathlib import Path
 from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
+from pydantic_core import from_json
 
 from kswarms.agents.actions import AWAY, Action
 from kswarms.agents.common.atomic_files import atomic_path
 from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.input_files import read_input_file, require_regular_file
+from kswarms.agents.common.limits import MAX_JSON_FILE
 from kswarms.agents.policies.interface import Policy, Setting
 
 
@@ -117,13 +120,15 @@ def check_arms(arms: Sequence[Mapping[str, Any]]) -> None:
 
 def load_learned(path: Path) -> SavedPolicies:
     """Read a file written by `save_learned`; raise an `InputError` if it is missing or invalid."""
-    try:
-        return _load(path, path.stat().st_mtime_ns)
-    except (OSError, ValueError, TypeError, RecursionError) as error:
-        raise InputError("file", str(path), f"must be a file of learned policies ({error})") from None
+    require_regular_file("file", path)
+    return _load(path, path.stat().st_mtime_ns)
 
 
 @lru_cache(maxsize=16)
 def _load(path: Path, _modified: int) -> SavedPolicies:
     # The cache is keyed by the modification time too, so that a changed file is read again.
-    return SavedPolicies(**json.loads(path.read_text(encoding="utf-8")))
+    content = read_input_file("file", path, MAX_JSON_FILE)
+    try:
+        return SavedPolicies(**from_json(content))  # unlike `json`, it limits the depth of brackets to 200
+    except (ValueError, TypeError) as error:
+        raise InputError("file", str(path), f"must be a file of learned policies ({error})") from None

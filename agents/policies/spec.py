@@ -22,7 +22,14 @@ from kswarms.agents.policies.interface import Policy, Setting
 from kswarms.agents.policies.learner import LEARNER_DEFAULTS
 from kswarms.agents.policies.registry import ALIASES, POLICIES
 from kswarms.agents.policies.user_policy import check_factory, parameters_of
-from kswarms.agents.user_code.loading import is_reference, load_class, reference_to, sources, user_errors
+from kswarms.agents.user_code.loading import (
+    check_reference,
+    is_reference,
+    load_class,
+    reference_to,
+    sources,
+    user_errors,
+)
 from kswarms.agents.user_code.syntax import Call, is_literal, parse_call, split_outside
 
 Factory = Callable[[Setting], Policy]
@@ -78,8 +85,36 @@ class PolicySpec:
 
     @property
     def is_user_defined(self) -> bool:
-        """Whether the code of the policy comes from outside the package."""
+        """Whether the class of the policy comes from outside the package."""
         return self.given is not None or is_reference(self.name)
+
+    @property
+    def runs_user_code(self) -> bool:
+        """Whether the policy, its reward or its rule comes from outside the package."""
+        return self.given is not None or bool(self.references())
+
+    def references(self) -> dict[str, str]:
+        """Return the references to user-defined classes, by the field that has them."""
+        named = {"policy": self.name}
+        for part in LEARNER_DEFAULTS:
+            if isinstance(text := self.arguments.get(part), str):
+                named[f"policy.{part}"] = parse_call(f"policy.{part}", text).name
+        return {field: name for field, name in named.items() if is_reference(name)}
+
+    def check(self, setting: Setting) -> None:
+        """Validate the policy for a game without executing user-defined code.
+
+        Of a user-defined class only the form of its reference is checked. Raises an `InputError`.
+        """
+        references = self.references()
+        for named_by, reference in references.items():
+            check_reference(named_by, reference)
+        if self.given is not None:
+            check_factory(self.name, self.given, {})
+        elif not is_reference(self.name):
+            own = [part for part in LEARNER_DEFAULTS if f"policy.{part}" in references]
+            built_in = {part: LEARNER_DEFAULTS[part] for part in own if self.learner_part(part)}
+            (self.with_arguments(**built_in) if built_in else self).build(setting)
 
     def factory(self, actions: Sequence[Action]) -> Factory:
         """Load the class and check the arguments; return a factory for a game with these actions."""
@@ -112,13 +147,13 @@ class PolicySpec:
 
     def files(self) -> list[Path]:
         """Return the files that the policy depends on: user-defined code and learned policies."""
-        name, arguments = self._require_call()
-        parts = {part: arguments.get(part) for part in LEARNER_DEFAULTS}
-        named = {"policy": name}
-        named |= {part: parse_call(part, text).name for part, text in parts.items() if isinstance(text, str)}
-        found = [file for part, name in named.items() if is_reference(name) for file in sources(part, name)]
-        file = arguments.get("file")
+        file = self._require_call().arguments.get("file")
+        found = self.code_files()
         return [*found, Path(file)] if isinstance(file, str) and Path(file).is_file() else found
+
+    def code_files(self) -> list[Path]:
+        """Return the files with user-defined code of the policy, its reward and its rule."""
+        return [path for each in self.references().items() for path in sources(*each)]
 
     def learner_part(self, part: str) -> Call | None:
         """Return the ``reward`` or ``rule`` (`part`) of a learner; None for other policies."""

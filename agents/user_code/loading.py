@@ -1,22 +1,28 @@
 """Loading of user-defined classes, named in texts: ``my_file.py:MyPolicy`` or ``package.module:MyPolicy``.
 
-The reference is enough for any process to load the class. Loading a class executes the code of its file.
+The reference is enough for any process to load the class. Only `load_class` executes code: the form of a
+reference is checked, and its files are found, without an import.
 """
 
 import contextlib
 import hashlib
 import importlib
+import importlib.util
 import inspect
 import re
 import sys
 import traceback
 from collections.abc import Iterator
 from functools import lru_cache
+from importlib.machinery import ModuleSpec, PathFinder
+from itertools import islice
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Final
 
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.input_files import read_input_file
+from kswarms.agents.common.limits import MAX_CODE_FILES, MAX_TEXT_FILE
 
 _LIBRARY_PREFIXES: Final = (f"{Path(__file__).parents[2]}/", sys.prefix, sys.base_prefix, "<frozen")
 """Path prefixes of code that is not the user's; error messages name the last line outside them."""
@@ -27,13 +33,22 @@ def is_reference(name: str) -> bool:
     return ":" in name
 
 
+def check_reference(field: str, reference: str) -> None:
+    """Raise an `InputError` unless a reference has a valid form; the file or module need not exist."""
+    where, _, name = reference.rpartition(":")
+    is_module = all(part.isidentifier() for part in where.split("."))
+    if not name.isidentifier() or not (where.endswith(".py") or is_module):
+        raise InputError(field, reference, "must be path/to/my_file.py:MyClass or package.module:MyClass")
+
+
 def load_class(field: str, reference: str, base: type | None = None) -> type[Any]:
     """Return the class that a reference names; errors name `field`.
 
     A file is executed once per process and content; its path is relative to the current directory. A module
     is imported, also from the current directory. The class must define all abstract methods of `base`.
     """
-    where, name = _split(field, reference)
+    check_reference(field, reference)
+    where, _, name = reference.rpartition(":")
     module = _load_module(field, reference, where)
     found = getattr(module, name, None)
     if not inspect.isclass(found):
@@ -65,15 +80,25 @@ def reference_to(kind: Any) -> str | None:
 
 
 def sources(field: str, reference: str) -> list[Path]:
-    """Return the files with the code of a reference: its file, or all files of the module's package."""
-    where, _ = _split(field, reference)
+    """Return the files with the code of a reference: its file, or all files of the module's package.
+
+    Nothing is imported; a file that a reference names need not exist.
+    """
+    check_reference(field, reference)
+    where = reference.rpartition(":")[0]
     if where.endswith(".py"):
         return [Path(where)]
-    module = _load_module(field, reference, where)
-    folders = getattr(sys.modules[where.partition(".")[0]], "__path__", None)
+    package = where.partition(".")[0]
+    found = _find_top_level(package)
+    if found is None:
+        raise InputError(field, reference, f"must name a module; there is no {package}")
+    folders = found.submodule_search_locations
     if folders is None:
-        return [Path(str(module.__file__))]
-    return sorted(file for folder in folders for file in Path(folder).rglob("*.py"))
+        return [Path(found.origin)] if found.has_location and found.origin else []
+    files = [*islice((file for each in folders for file in Path(each).rglob("*.py")), MAX_CODE_FILES + 1)]
+    if len(files) > MAX_CODE_FILES:
+        raise InputError(field, reference, f"must be of a package of at most {MAX_CODE_FILES:,} Python files")
+    return sorted(files)
 
 
 @contextlib.contextmanager
@@ -94,24 +119,19 @@ def user_errors(field: str, reference: str, what: str) -> Iterator[None]:
         raise InputError(field, reference, f"{what} raises {cause}") from error
 
 
-def _split(field: str, reference: str) -> tuple[str, str]:
-    where, _, name = reference.rpartition(":")
-    if not where or not name.isidentifier():
-        raise InputError(field, reference, "must be path/to/my_file.py:MyClass or package.module:MyClass")
-    return where, name
+def _find_top_level(name: str) -> ModuleSpec | None:
+    """Find a top-level module or package as an import would; only a submodule would import its package."""
+    try:
+        found = importlib.util.find_spec(name)
+    except ValueError:  # a loaded module without a spec
+        found = None
+    return found or PathFinder.find_spec(name, [str(Path.cwd())])
 
 
 def _load_module(field: str, reference: str, where: str) -> ModuleType:
     if where.endswith(".py"):
-        path = Path(where)
-        try:
-            path = path.resolve()
-            source = path.read_bytes()
-        except ValueError as error:  # a NUL character
-            raise InputError(field, reference, f"must name a file ({error})") from None
-        except OSError as error:
-            reason = error.strerror or "unreadable"
-            raise InputError(field, reference, f"must name a file; {path}: {reason}") from None
+        source = read_input_file(field, Path(where), MAX_TEXT_FILE)
+        path = Path(where).resolve()
         with user_errors(field, reference, f"importing {path.name}"):
             return _execute(path, source)
     directory = str(Path.cwd())

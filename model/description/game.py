@@ -9,7 +9,6 @@ from pydantic import Field, field_validator, model_validator
 from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.limits import LONGEST_STEP, MAX_PERIODS, MAX_ROBOTS
-from kswarms.agents.conformance.trial import try_policy
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.registry import ALIASES, POLICIES
 from kswarms.agents.policies.spec import parse_policies
@@ -87,7 +86,7 @@ class Game(GameFields):
         for k, swarm in enumerate(self.swarms):
             setting = Setting(k, len(self.swarms), actions, Streams(0, 0))
             for spec in parse_policies(swarm.policy):
-                try_policy(spec, setting)
+                spec.check(setting)
 
     def _check_motion(self) -> None:
         parameters, body = self.parameters, self.body
@@ -126,6 +125,11 @@ class Game(GameFields):
     def size(self) -> int:
         """Number of robots N, absent robots included."""
         return sum(swarm.size for swarm in self.swarms)
+
+    @property
+    def runs_user_code(self) -> bool:
+        """Whether a game of this description executes user-defined code."""
+        return any(spec.runs_user_code for swarm in self.swarms for spec in parse_policies(swarm.policy))
 
     @property
     def action_set(self) -> tuple[Action, ...]:

@@ -6,13 +6,14 @@ from typing import Annotated
 import typer
 
 from kswarms.agents.common.errors import InputError
-from kswarms.scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Source, resolve_run
+from kswarms.scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Source, Trust, resolve_run
 from kswarms.scenarios.cli.printing import print_columns
 
 
 def conflicts(
     source: Source = None,
     run: RunDigest = "",
+    trust: Trust = False,
     condition: ConditionName = None,
     n: Robots = None,
     seed: Seed = None,
@@ -29,7 +30,7 @@ def conflicts(
 
     Example: kswarms conflicts fig-6.4b --n 6 --robot 3 --from 0
     """
-    found = resolve_run(source, run, condition, n, seed)
+    found = resolve_run(source, run, trust, condition, n, seed)
     if robot is not None and not 0 <= robot < found.n:
         raise InputError("robot", robot, f"must be in 0 to {found.n - 1}")
     if math.isnan(begin):

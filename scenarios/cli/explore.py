@@ -6,12 +6,13 @@ from typing import Annotated
 import typer
 
 from kswarms.agents.common.errors import InputError
-from kswarms.scenarios.cli.options import RunDigest, Source, resolve_source
+from kswarms.scenarios.cli.options import RunDigest, Source, Trust, resolve_source
 
 
 def explore(
     source: Source = None,
     run: RunDigest = "",
+    trust: Trust = False,
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 for any free port.")] = 8765,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Do not open a browser.")] = False,
 ) -> None:
@@ -24,6 +25,6 @@ def explore(
     from kswarms.scenarios.explore.server import serve
     from kswarms.scenarios.explore.session import Session
 
-    start = resolve_source(source, run)
+    start = resolve_source(source, run, trust)
     Session(start).close()  # reports an error here, before a page is opened
     serve(start, port, not no_browser, lambda address: typer.echo(f"page: {address}  (Ctrl-C ends it)"))

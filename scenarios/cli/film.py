@@ -11,7 +11,7 @@ from PIL.Image import Image
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.film.files import check_film, write_film, write_sheet
 from kswarms.analysis.film.painter import ArenaPainter
-from kswarms.scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Source, resolve_run
+from kswarms.scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Source, Trust, resolve_run
 from kswarms.scenarios.cli.progress import track
 from kswarms.scenarios.runs.run import Run
 
@@ -22,6 +22,7 @@ _MAX_FRAMES: Final = 100_000
 def film(
     source: Source = None,
     run: RunDigest = "",
+    trust: Trust = False,
     condition: ConditionName = None,
     n: Robots = None,
     seed: Seed = None,
@@ -48,7 +49,7 @@ def film(
 
     Example: kswarms film fig-6.1c --n 50 --to 120 --out fight.gif
     """
-    found = resolve_run(source, run, condition, n, seed)
+    found = resolve_run(source, run, trust, condition, n, seed)
     length, first = found.game.duration, 0.0 - found.game.learning
     end = length if end is None else end
     _check("from", begin, first <= begin < length, f"must be at least {first}, below {length}")

@@ -61,8 +61,13 @@ Seed = Annotated[
     int | None, typer.Option("--seed", min=0, max=MAX_SEED, help="Seed of the game. [default: 0]")
 ]
 
+Trust = Annotated[
+    bool,
+    typer.Option("--trust", help="Allow the run of DIR to execute the user-defined code that it names."),
+]
 
-def resolve_source(source: str | None, run: str) -> str | Run:
+
+def resolve_source(source: str | None, run: str, trust: bool) -> str | Run:
     """Return the id or file of a scenario, or the run of a results directory if a digest is given."""
     if not run:
         return source or DEFAULT_SCENARIO
@@ -70,12 +75,14 @@ def resolve_source(source: str | None, run: str) -> str | Run:
         raise InputError("run", run, "needs a results directory, DIR")
     from kswarms.scenarios.watch.recorded_run import recorded_run
 
-    return recorded_run(Path(source), run)
+    return recorded_run(Path(source), run, trust)
 
 
-def resolve_run(source: str | None, run: str, condition: str | None, n: int | None, seed: int | None) -> Run:
+def resolve_run(
+    source: str | None, run: str, trust: bool, condition: str | None, n: int | None, seed: int | None
+) -> Run:
     """Return a run of a results directory if a digest is given, or else a run of a scenario."""
-    start = resolve_source(source, run)
+    start = resolve_source(source, run, trust)
     if isinstance(start, Run):
         for field, value in (("condition", condition), ("n", n), ("seed", seed)):
             if value is not None:

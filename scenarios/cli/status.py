@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from kswarms.scenarios.cli.options import Trust
 from kswarms.scenarios.cli.printing import format_duration, print_columns
 from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.ledger import Ledger
@@ -44,16 +45,20 @@ def status(directory: Directory) -> None:
 def replay(
     directory: Directory,
     run_digest: Annotated[str, typer.Argument(metavar="RUN", help="Digest: column `run` of a table.")],
+    trust: Trust = False,
 ) -> int:
     """Play one run again, print its results and compare them with DIR. It writes nothing.
 
     Example: kswarms replay results 0c2b1f7a9d3e4f56
     """
     from kswarms.scenarios.runs.play import play
+    from kswarms.scenarios.watch.recorded_run import require_no_user_code
 
     with Ledger(directory / LEDGER_FILE) as ledger:
         run = ledger.run(run_digest)
         kept = ledger.outcome(run_digest)
+    if not trust:
+        require_no_user_code(run)
     typer.echo(str(run))
     outcome = play(run)
     for row in (*outcome.swarms, *outcome.policies):

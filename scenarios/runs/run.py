@@ -4,12 +4,13 @@ import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
-from hashlib import sha256
+from hashlib import file_digest, sha256
 from pathlib import Path
 from typing import Final
 
 from kswarms import __version__
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.input_files import require_regular_file
 from kswarms.agents.policies.spec import parse_policies
 from kswarms.model.description.game import Game
 from kswarms.scenarios.description.condition import Condition
@@ -92,20 +93,34 @@ def _json(content: object) -> str:
 
 
 def _file_hashes(game: Game) -> list[str]:
-    return [sha256(file.read_bytes()).hexdigest() for file in _files(game)]
+    return [hash_file(file) for file in loaded_files(game)]
 
 
-def _files(game: Game) -> list[Path]:
+def hash_file(path: Path) -> str:
+    """Return the SHA-256 of a regular file, which may have any size."""
+    require_regular_file("policy", path)
+    with path.open("rb") as file:
+        return file_digest(file, "sha256").hexdigest()
+
+
+def loaded_files(game: Game) -> list[Path]:
+    """Return the files that a game loads: user-defined code and learned policies."""
     specs = (spec for swarm in game.swarms for spec in parse_policies(swarm.policy))
     return [file for spec in specs for file in spec.files()]
 
 
+def user_code_files(game: Game) -> list[Path]:
+    """Return the files with user-defined code that a game executes, each once."""
+    specs = (spec for swarm in game.swarms for spec in parse_policies(swarm.policy))
+    return list(dict.fromkeys(file for spec in specs for file in spec.code_files()))
+
+
 def require_unchanged(run: Run) -> None:
     """Raise an `InputError` if a file that the run loads has changed since its digest was computed."""
-    loaded = _files(run.game)
+    loaded = loaded_files(run.game)
     try:
         changed = bool(loaded) and digest(run.game, run.seed) != run.digest
-    except OSError:
+    except (OSError, InputError):
         changed = True
     if changed:
         names = ", ".join(dict.fromkeys(map(str, loaded)))

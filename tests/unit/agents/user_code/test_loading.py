@@ -69,9 +69,9 @@ def at(code: str) -> str:
 
 
 INVALID = [
-    ("no.py:X", "policy='no.py:X': must name a file; ", "no.py: No such file or directory"),
-    ("my\0own.py:X", "policy='my\\x00own.py:X': must name a file (", ")"),
-    ("learner(reward='my\\0own.py:X')", "policy.reward='my\\x00own.py:X': must name a file (", ")"),
+    ("no.py:X", "policy='no.py': must be a readable file (No such file or directory)", ""),
+    ("my\0own.py:X", "policy='my\\x00own.py': must be a readable file (", ")"),
+    ("learner(reward='my\\0own.py:X')", "policy.reward='my\\x00own.py': must be a readable file (", ")"),
     ("own.py:Cautio", "policy='own.py:Cautio': own.py has no class Cautio; its classes: Cautious, Needy", ""),
     ("own.py:NUMBER", "policy='own.py:NUMBER': own.py has no class NUMBER; its classes:", ""),
     ("own.py:", "policy='own.py:': must be path/to/my_file.py:MyClass or package.module:MyClass", ""),
@@ -102,7 +102,7 @@ INVALID = [
     ("learner(rule='own.py:First(arm=2)')", "policy.rule='own.py:First': prefer(…) must return 0 to 1", ""),
     ("learner(rule='own.py:Lost')", "policy.rule='own.py:Lost': its trial raises Attr", at("bandit.counts")),
     ("learner(rule='own.py:Greater')", "policy.rule='own.py:Greater': factor must be ", "2.0"),
-    ("own.py:Subclass(reward='x.py:Y')", "policy.reward='x.py:Y': must name a file", ""),
+    ("own.py:Subclass(reward='x.py:Y')", "policy.reward='x.py': must be a readable", ""),
     ("nowhere.at_all:X", "policy='nowhere.at_all:X': importing nowhere.at_all", "named 'nowhere'"),
     ("sys:X", "policy='sys:X': sys has no class X; its classes: none", ""),
     ("json:JSONDecoder", "policy='json:JSONDecoder': is no policy: it lacks choose", ""),
@@ -110,9 +110,9 @@ INVALID = [
 
 
 @pytest.mark.parametrize(("text", "begin", "end"), INVALID, ids=[row[0] for row in INVALID])
-def test_errors_surface_when_the_game_is_created(text: str, begin: str, end: str) -> None:
+def test_errors_surface_when_the_model_is_created(text: str, begin: str, end: str) -> None:
     with pytest.raises(InputError) as caught:
-        game(text)
+        GameModel(game(text))
     line = str(caught.value).removeprefix("swarms.1.")
     assert line.startswith(begin)
     assert line.endswith(end)
@@ -131,8 +131,9 @@ def test_errors_surface_when_the_game_is_created(text: str, begin: str, end: str
 )
 def test_errors_of_an_import_have_a_line(code: str, message: str) -> None:
     Path("bad.py").write_text(code)
+    described = game("bad.py:X")
     with pytest.raises(InputError, match=message):
-        game("bad.py:X")
+        GameModel(described)
 
 
 def test_a_file_is_executed_once_for_each_content() -> None:
