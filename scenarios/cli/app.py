@@ -3,6 +3,7 @@
 A command's module is imported when the command is called, so that help and shell completion start fast.
 """
 
+import signal
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
@@ -17,8 +18,10 @@ from kswarms.agents.common.errors import InputError, printable
 from kswarms.scenarios.cli.parser_errors import to_input_error
 from kswarms.scenarios.cli.terminal import flush_output, prepare_streams
 from kswarms.scenarios.runs.errors import RunError
+from kswarms.scenarios.signals import signals_as_interrupts
 
-INTERRUPTED: Final = 130
+_INTERRUPTED: Final = 130
+"""Exit status of typer after a `KeyboardInterrupt`."""
 
 COMMANDS: Final = {
     "list": ("catalogue", "list_scenarios", "List scenarios and tables, with their cost."),
@@ -60,7 +63,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Simulate competing swarms of foraging robots and analyse the results.",
     epilog="Example: kswarms run fig-6.1a --densities 6,30 --seeds 3\n\n"
-    "Exit status: 0 done, 1 failed, 2 bad input, 130 interrupted.",
+    "Exit status: 0 done, 1 failed, 2 bad input; interrupted: 130 Ctrl-C, 143 SIGTERM, 129 SIGHUP.",
 )
 for _name, (_, _, _short) in COMMANDS.items():
     app.command(_name, short_help=_short)(
@@ -80,10 +83,23 @@ def main() -> None:
 def invoke(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status, which `--help` documents.
 
-    `arguments` are the words after ``kswarms``; the default is the arguments of this process.
+    `arguments` are the words after ``kswarms``; the default is the arguments of this process. SIGTERM and
+    SIGHUP end a command as Ctrl-C does. The status is then 128 plus the number of the signal.
     """
+    words = sys.argv[1:] if arguments is None else arguments
+    with signals_as_interrupts() as arrived:
+        try:
+            status = _run_command(words)
+        except KeyboardInterrupt:  # outside typer
+            status = _INTERRUPTED
+    if status and arrived:
+        by = "" if arrived[0] == signal.SIGINT else f" by {arrived[0].name}"
+        return _print_error(f"interrupted{by}", 128 + arrived[0])
+    return _print_error("interrupted", status) if status == _INTERRUPTED else status
+
+
+def _run_command(words: Sequence[str]) -> int:
     try:
-        words = sys.argv[1:] if arguments is None else arguments
         code: int | None = app(words, prog_name="kswarms", standalone_mode=False, obj=("kswarms", *words))
     except InputError as error:
         return _print_error(str(error), 2)
@@ -96,8 +112,6 @@ def invoke(arguments: Sequence[str] | None = None) -> int:
         return _print_error(str(error), 1)
     except typer.TyperException as error:
         return _print_error(str(to_input_error(error, words)), error.exit_code)
-    if code == INTERRUPTED:
-        return _print_error("interrupted", code)
     return code or 0
 
 

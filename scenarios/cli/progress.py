@@ -4,8 +4,8 @@ import json
 import sys
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-from contextlib import closing, contextmanager
-from typing import Any, Final, Literal, TypeVar
+from contextlib import closing, contextmanager, suppress
+from typing import Any, Final, Literal, TextIO, TypeVar, cast
 
 import typer
 
@@ -19,6 +19,29 @@ _Step = TypeVar("_Step")
 
 _LINE_EVERY: Final = 1.0
 """Minimum time between two lines of JSON (s)."""
+
+
+class _Lossy:
+    """A text stream without errors, so that work continues if the terminal is closed."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+    def write(self, text: str) -> int:
+        with suppress(OSError):
+            self._stream.write(text)
+        return len(text)
+
+    def flush(self) -> None:
+        with suppress(OSError):
+            self._stream.flush()
+
+
+def _standard_error() -> TextIO:
+    return cast(TextIO, _Lossy(sys.stderr))
 
 
 class Count:
@@ -76,7 +99,7 @@ def _json_lines(count: Count) -> Iterator[Callable[[str], None]]:
             printed_at = time.monotonic()
             line: dict[str, Any] = {"done": count.done, "failed": count.failed, "total": count.total}
             line |= {"runs_per_second": round(count.rate, 3), "seconds_left": round(count.left, 1)}
-            typer.echo(json.dumps(line | {"scenario": scenario}), err=True)
+            typer.echo(json.dumps(line | {"scenario": scenario}), _standard_error())
 
     yield report
 
@@ -88,7 +111,7 @@ def _bar(count: Count) -> Iterator[Callable[[str], None]]:
 
     state = TextColumn("{task.fields[state]}")
     with Progress(
-        TextColumn("{task.description}"), BarColumn(), state, console=Console(file=sys.stderr)
+        TextColumn("{task.description}"), BarColumn(), state, console=Console(file=_standard_error())
     ) as progress:
         task = progress.add_task("starting", total=count.work, state=f"0/{count.total} runs")
 
@@ -116,6 +139,6 @@ def track(steps: Iterable[_Step], label: str, total: int) -> Iterable[_Step]:
     from rich import progress
     from rich.console import Console
 
-    console = Console(stderr=True)
+    console = Console(file=_standard_error())
     hidden = not console.is_terminal
     return progress.track(steps, label, total=total, console=console, transient=True, disable=hidden)

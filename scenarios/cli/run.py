@@ -122,24 +122,26 @@ def _play(
     """Play the missing runs of a study; return the tables written and the number of failed runs."""
     from kswarms.scenarios.study.study import Study
 
-    failed = 0
-    with ExitStack() as stack:
-        executor = None
-        if scheduler is not None:
-            from kswarms.scenarios.runs.dask import dask_executor
+    failed, playing = 0, False
+    try:
+        with ExitStack() as stack:
+            executor = None
+            if scheduler is not None:
+                from kswarms.scenarios.runs.dask import dask_executor
 
-            executor, workers = stack.enter_context(dask_executor(scheduler))
-        study = stack.enter_context(Study(out, command))
-        runs = study.plan(scenarios, first_seed, records)
-        for code in study.other_code:
-            _warn(f"{out} has runs of other code, {code}; use another --out to play them again")
-        try:
+                executor, workers = stack.enter_context(dask_executor(scheduler))
+            study = stack.enter_context(Study(out, command))
+            runs = study.plan(scenarios, first_seed, records)
+            for code in study.other_code:
+                _warn(f"{out} has runs of other code, {code}; use another --out to play them again")
+            playing = True
             with closing(study.play(runs, workers, records, executor)) as played:
                 for count in show_progress(played, runs, progress):
                     failed = count.failed
-        except KeyboardInterrupt:
+    except KeyboardInterrupt:
+        if playing:  # after the tables are written, because the terminal may be gone
             _warn(f"{out} has the finished runs; repeat the command to resume")
-            raise
+        raise
     if failed:
         _warn(f"{failed} of {len(runs)} runs failed; see `kswarms status {shlex.quote(str(out))}`")
     return study.tables, failed

@@ -15,6 +15,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.runs.executor import play_through
 from kswarms.scenarios.runs.outcome import Failure, Result
 from kswarms.scenarios.runs.run import Run
+from kswarms.scenarios.signals import deferred_signals
 
 GAMES_PER_WORKER: Final = 2500
 """Games per worker before it is replaced. Mesa keeps memory of each game, so workers grow."""
@@ -62,14 +63,16 @@ def _new_workers(jobs: int) -> Iterator[tuple[Executor, Event]]:
     """Yield an executor with new processes, and an event that is set when one of them has started."""
     others = set(active_children())
     context = get_context("spawn")
-    started = context.Event()
+    with _blocked_signals():  # the process that tracks resources starts here
+        started = context.Event()
     executor = _Workers(jobs, context, _start_worker, (started,))
     try:
         yield executor, started
     except BaseException:
         # After Ctrl-C, or when the caller stops: do not wait for games that may take minutes.
-        for worker in set(active_children()) - others:
-            worker.terminate()
+        with deferred_signals():
+            for worker in set(active_children()) - others:
+                worker.terminate()
         raise
     finally:
         executor.shutdown(cancel_futures=True)
@@ -77,13 +80,21 @@ def _new_workers(jobs: int) -> Iterator[tuple[Executor, Event]]:
 
 class _Workers(ProcessPoolExecutor):
     def submit(self, *arguments: Any, **options: Any) -> Future[Any]:
-        # Processes start here and inherit the signal mask: only the parent handles Ctrl-C, which a terminal
-        # sends to all of them.
-        mask = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
-        try:
+        with _blocked_signals():  # processes start here
             return super().submit(*arguments, **options)
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+
+
+@contextmanager
+def _blocked_signals() -> Iterator[None]:
+    """Block Ctrl-C and SIGHUP, which a terminal sends to all processes, in processes that start here.
+
+    Processes inherit the signal mask, so only the parent handles these signals.
+    """
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGHUP])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
 def _start_worker(started: Event) -> None:

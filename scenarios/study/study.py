@@ -24,6 +24,7 @@ from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.runs.outcome import Outcome, Result
 from kswarms.scenarios.runs.run import Run, code_version, describe_curve, expand
 from kswarms.scenarios.runs.sweep import sweep
+from kswarms.scenarios.signals import deferred_signals
 from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.directory import make_directory, write_json
 from kswarms.scenarios.study.ledger import Ledger
@@ -40,7 +41,8 @@ _ENTROPY: Final = "numpy PCG64(SeedSequence(seed, spawn_key=(robot, purpose))), 
 class Study:
     """A directory of results, open for playing; a context manager.
 
-    On exit, also after Ctrl-C, it writes the manifest and the `tables` of all finished runs.
+    On exit, also after Ctrl-C, it writes the manifest and the `tables` of all finished runs. Signals that
+    arrive while it writes are deferred.
 
     Parameters
     ----------
@@ -76,8 +78,8 @@ class Study:
         self._about = _describe_session(self._command)
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _trace: object) -> None:
-        with self._resources:
+    def __exit__(self, _kind: object, error: BaseException | None, _trace: object) -> None:
+        with self._resources, deferred_signals():
             if self._session is None:  # `plan` was not called, or failed
                 return
             if isinstance(error, OSError):
@@ -88,7 +90,7 @@ class Study:
             with TemporaryDirectory(dir=self.directory, prefix=_TEMPORARY_TABLES) as temporary:
                 written = export(self._ledger, Path(temporary))
                 self.tables = [path.replace(self.directory / path.name) for path in written]
-            self._update_session(status=f"stopped: {kind.__name__}" if kind else "done", ended=_now())
+            self._update_session(status=_status(error), ended=_now())
 
     def plan(
         self, scenarios: Sequence[Scenario], first_seed: int = 0, records: Sequence[str] = ()
@@ -172,6 +174,14 @@ class Study:
             "sessions": self._ledger.sessions(),
         }
         write_json(self.directory / MANIFEST, content)
+
+
+def _status(error: BaseException | None) -> str:
+    """Return the status of a session that ends with this error."""
+    if error is None:
+        return "done"
+    number = str(error) if isinstance(error, KeyboardInterrupt) else ""  # its text names the signal, if any
+    return f"stopped: {number or type(error).__name__}"
 
 
 def _refuse_foreign_tables(directory: Path) -> None:

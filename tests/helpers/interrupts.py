@@ -1,6 +1,9 @@
-"""Ctrl-C for processes that a test starts."""
+"""Signals for processes that a test starts, and their end."""
 
 import signal
+import time
+from contextlib import suppress
+from pathlib import Path
 
 
 def accept_interrupts() -> None:
@@ -9,3 +12,18 @@ def accept_interrupts() -> None:
     Use it as the argument ``preexec_fn`` of `subprocess.Popen`.
     """
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def wait_for_end_of_group(group: int) -> None:
+    """Wait until no process of a process group runs; fail after some seconds."""
+    deadline = time.monotonic() + 10
+    while any(_runs(stat, group) for stat in Path("/proc").glob("[0-9]*/stat")):
+        assert time.monotonic() < deadline, "processes are left"
+        time.sleep(0.05)
+
+
+def _runs(stat: Path, group: int) -> bool:
+    with suppress(OSError):
+        state, _parent, its_group = stat.read_text().rpartition(")")[2].split()[:3]
+        return int(its_group) == group and state != "Z"
+    return False

@@ -71,7 +71,7 @@ def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert capsys.readouterr().out.startswith("kswarms 0.")
     assert invoke([]) == 0
     text = capsys.readouterr().out
-    assert "Exit status: 0 done, 1 failed, 2 bad input, 130 interrupted." in text
+    assert "0 done, 1 failed, 2 bad input; interrupted: 130 Ctrl-C, 143" in text
     listed = text.split("Commands:")[1].split("Example:")[0].splitlines()
     assert all(line.endswith(".") and not line.endswith("...") for line in listed if line.strip())
     commands = [line.split()[0] for line in listed if line.strip()]

@@ -19,7 +19,7 @@ from kswarms.model.game_model import GameModel
 from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.study import Study
-from tests.helpers.interrupts import accept_interrupts
+from tests.helpers.interrupts import accept_interrupts, wait_for_end_of_group
 from tests.helpers.tiny_study import RUN, TINY, Fault, read_sessions, read_tables, uninterrupted_tables
 
 pytestmark = pytest.mark.usefixtures("tiny_file")
@@ -82,7 +82,10 @@ def test_ctrl_c_keeps_finished_runs(
 
 
 @pytest.mark.slow
-def test_ctrl_c_stops_worker_processes_and_keeps_finished_runs() -> None:
+@pytest.mark.parametrize(
+    ("number", "to_all"), [(signal.SIGINT, True), (signal.SIGHUP, True), (signal.SIGTERM, False)]
+)
+def test_signals_stop_worker_processes_and_keep_finished_runs(number: signal.Signals, to_all: bool) -> None:
     # Over half a minute of games, so that the signal arrives before the last, even on a slow machine.
     words = ["run", "fig-6.2", "--densities", "50", "--seeds", "500", "--no-figures", "--jobs", "2"]
     with subprocess.Popen(
@@ -97,15 +100,19 @@ def test_ctrl_c_stops_worker_processes_and_keeps_finished_runs() -> None:
         line = json.loads(process.stderr.readline())
         assert (line["done"], line["failed"], line["total"], line["scenario"]) == (1, 0, 500, "fig-6.2")
         assert line["seconds_left"] > 0
-        os.killpg(process.pid, signal.SIGINT)  # like a terminal, also to the workers
+        if to_all:
+            os.killpg(process.pid, number)  # like a terminal, also to the workers
+        else:
+            process.send_signal(number)  # like a batch system
         out, err = process.communicate(timeout=20)
-    assert process.returncode == 130
+    assert process.returncode == 128 + number
     assert out == ""
     assert "Traceback" not in err
-    assert err.splitlines()[-1] == "kswarms: interrupted"
+    assert err.splitlines()[-1].startswith("kswarms: interrupted")
+    wait_for_end_of_group(process.pid)
     finished = finished_runs()
     assert 1 <= len(finished) < 500
-    assert read_sessions()[0]["status"] == "stopped: KeyboardInterrupt"
+    assert read_sessions()[0]["status"] == f"stopped: {number.name}"
     assert invoke([*words, "--seeds", "2", "--jobs", "1", "--quiet"]) == 0
     assert read_sessions()[1]["runs"]["done before"] >= 1
     assert finished <= finished_runs()
