@@ -65,8 +65,9 @@ class Kernel:
         advance(self.memory, 0, 0)  # compiles, or loads the cached code; moves nothing
         # The dispatcher of a compiled function looks up the types of all arguments at each call, which takes
         # longer than the call. They never change in a game, so the machine code is called directly.
-        machine_code = next(iter(advance.overloads.values())).entry_point  # type: ignore[attr-defined]
-        self.advance: Callable[[int, int], tuple[int, int]] = partial(machine_code, self.memory)
+        overloads = getattr(advance, "overloads", None)  # None with NUMBA_DISABLE_JIT=1
+        function = next(iter(overloads.values())).entry_point if overloads else advance
+        self.advance: Callable[[int, int], tuple[int, int]] = partial(function, self.memory)
 
 
 def make_scalars(game: Game, arena: Arena) -> Records:
