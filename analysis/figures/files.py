@@ -1,6 +1,7 @@
 """Figures as PNG and SVG files; the same figure always has the same bytes."""
 
 import warnings
+from contextlib import suppress
 from io import BytesIO
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -64,13 +65,16 @@ def save_figure(figure: Figure, path: Path) -> None:
     Raises
     ------
     InputError
-        The format is unknown, or the file cannot be written; then an existing file is unchanged.
+        The format is unknown, or the path is not writable.
+    OSError
+        Writing fails; an existing file is unchanged.
     """
     write_file(path, encode(figure, path.suffix.removeprefix(".").lower()), "figures")
 
 
 def write_file(path: Path, content: bytes, field: str) -> None:
-    """Write a file atomically and create missing folders; `InputError` about `field` if that fails."""
-    with output_path(path, field) as temporary:
+    """Write a file atomically and create missing folders; `InputError` about `field` if that is refused."""
+    with suppress(OSError):  # `output_path` reports it
         path.parent.mkdir(parents=True, exist_ok=True)
+    with output_path(path, field) as temporary:
         temporary.write_bytes(content)

@@ -32,7 +32,7 @@ def write_film(path: Path, images: Iterable[Image.Image], fps: int) -> None:
     """Write images as a film with `fps` images per second.
 
     `images` has at least one image; all have the same size, with even width and height. `InputError` as in
-    `check_film`, or if the file cannot be written; then an existing file is unchanged.
+    `check_film` and `check_output`. After an error, an existing file is unchanged.
     """
     check_film(path)
     with output_path(path, "out") as file:
@@ -42,8 +42,8 @@ def write_film(path: Path, images: Iterable[Image.Image], fps: int) -> None:
 def write_sheet(path: Path, images: Sequence[Image.Image]) -> None:
     """Write images side by side as one PNG.
 
-    `images` has at least one image; all have the same size. `InputError` if the file cannot be written; then
-    an existing file is unchanged.
+    `images` has at least one image; all have the same size. `InputError` as in `check_output`. After an
+    error, an existing file is unchanged.
     """
     width, height = images[0].size
     columns = min(_MAX_COLUMNS, math.ceil(math.sqrt(len(images))))
@@ -62,7 +62,8 @@ def _write_mp4(path: Path, images: Iterator[Image.Image], fps: int) -> None:
 
     first = next(images)
     settings = {"fps": fps, "macro_block_size": 2, "ffmpeg_log_level": "error"}
-    encoder = imageio_ffmpeg.write_frames(str(path), first.size, **settings)
+    name = f"file:{path}"  # otherwise a colon in the path ends the name of a protocol
+    encoder = imageio_ffmpeg.write_frames(name, first.size, **settings)
     encoder.send(None)
     try:
         for image in chain([first], images):

@@ -14,10 +14,13 @@ from urllib.parse import quote
 import pandas as pd
 from matplotlib.figure import Figure
 
+from kswarms.agents.common.atomic_files import check_directory
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.figures.files import EncodedFigure, encode_all, write_file
 from kswarms.analysis.text_tables import TEMPLATES, TextTable
 
+_MARK: Final = ".kswarms-report"
+"""Hidden file that marks a folder of files of a report."""
 _MIME: Final = {"png": "image/png", "svg": "image/svg+xml"}
 
 
@@ -119,20 +122,27 @@ class Report:
         return TEMPLATES.get_template("report.html").render(report=self)
 
     def write_page(self, path: Path) -> None:
-        """Write the page; `InputError` on failure, and an existing file is unchanged."""
+        """Write the page; `InputError` if `path` is not writable. After an error an old file is unchanged."""
         write_file(path, self.to_html().encode(), "out")
 
     def write_files(self, folder: Path) -> int:
         """Write figures as PNG and SVG, tables as CSV, Markdown and HTML; return the number of files.
 
-        `InputError` if the folder cannot be created or a file cannot be written.
+        Files of the same names are replaced. `InputError` as in `check_folder`, or if the folder cannot be
+        created.
         """
+        check_folder(folder)
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise InputError("files", str(folder), f"must be a folder ({error.strerror})") from error
+            raise InputError("files", str(folder), f"must be a directory ({error.strerror})") from error
         parts = [part for chapter in self.chapters for part in chapter.parts]
         contents = {name: content for part in parts for name, content in part.files.items()}
-        for name, content in contents.items():
+        for name, content in {_MARK: b"Files of kswarms\n", **contents}.items():
             write_file(folder / name, content, "files")
         return len(contents)
+
+
+def check_folder(folder: Path) -> None:
+    """Raise an `InputError` unless a folder for files of reports is new, empty or has files of a report."""
+    check_directory(folder, "files", [_MARK])

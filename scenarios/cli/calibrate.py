@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from kswarms.scenarios.cli.options import CPUS, Jobs, parse_directory
+from kswarms.scenarios.cli.options import CPUS, Jobs, parse_path
 from kswarms.scenarios.cli.progress import play_tracked
 from kswarms.scenarios.description.text import parse_integers, split_words
 from kswarms.scenarios.runs.run import Run
@@ -40,7 +40,7 @@ def calibrate(
     jobs: Jobs = CPUS,
     out: Annotated[
         Path,
-        typer.Option(parser=parse_directory, metavar="DIR", help="Output directory; a fit in it is resumed."),
+        typer.Option(parser=parse_path, metavar="DIR", help="Output directory; a fit in it is resumed."),
     ] = Path("calibration"),
     fresh: Annotated[
         bool, typer.Option("--fresh", help="Delete the fit in DIR and start a new one.")

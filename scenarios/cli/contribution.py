@@ -8,7 +8,7 @@ import typer
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.limits import MAX_SEEDS
 from kswarms.scenarios.catalogue.selection import select_scenarios
-from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, complete_scenario_ids, parse_directory
+from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, complete_scenario_ids, parse_path
 from kswarms.scenarios.cli.printing import print_table
 from kswarms.scenarios.cli.progress import play_tracked
 
@@ -37,7 +37,7 @@ def contribution(
     ] = "learning",
     jobs: Jobs = CPUS,
     out: Annotated[
-        Path, typer.Option(parser=parse_directory, metavar="DIR", help="Results directory.")
+        Path, typer.Option(parser=parse_path, metavar="DIR", help="Results directory.")
     ] = Path("results"),
 ) -> None:
     """Measure what robots contribute: repeat each game without the robot, and compare with its reward.

@@ -8,10 +8,20 @@ from typing import Annotated, Final
 import typer
 from PIL.Image import Image
 
+from kswarms.agents.common.atomic_files import check_output
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.film.files import check_film, write_film, write_sheet
 from kswarms.analysis.film.painter import ArenaPainter
-from kswarms.scenarios.cli.options import ConditionName, Robots, RunDigest, Seed, Source, Trust, resolve_run
+from kswarms.scenarios.cli.options import (
+    ConditionName,
+    Robots,
+    RunDigest,
+    Seed,
+    Source,
+    Trust,
+    parse_path,
+    resolve_run,
+)
 from kswarms.scenarios.cli.progress import track
 from kswarms.scenarios.runs.run import Run
 
@@ -41,7 +51,9 @@ def film(
     out: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE", help="Film (.mp4, .gif) or sheet (.png). [default: named after the game]"
+            parser=parse_path,
+            metavar="FILE",
+            help="Film (.mp4, .gif) or sheet (.png). [default: a new file named after the game]",
         ),
     ] = None,
 ) -> None:
@@ -55,7 +67,9 @@ def film(
     _check("from", begin, first <= begin < length, f"must be at least {first}, below {length}")
     _check("to", end, begin < end <= length, f"must be greater than {begin}, and at most {length}")
     _check("speed", speed, 0 < speed < math.inf, "must be greater than 0")
-    out = out or Path(_file_name(found) + (".mp4" if sheet is None else ".png"))
+    if out is None:
+        out = Path(_file_name(found) + (".mp4" if sheet is None else ".png"))
+        _check("out", str(out), not out.exists(), "exists; give its name with --out to replace it")
     if sheet is None:
         check_film(out)
         step = speed / fps
@@ -65,7 +79,7 @@ def film(
     else:
         _check("out", str(out), out.suffix == ".png", "must end with .png for a contact sheet")
         instants = [begin + (end - begin) * (k / (sheet - 1) if sheet > 1 else 1.0) for k in range(sheet)]
-    _check("out", str(out), out.parent.is_dir(), "must be in a directory that exists")
+    check_output(out, "out")
     frames = _frames(found, instants, size)
     if sheet is None:
         write_film(out, frames, fps)

@@ -31,11 +31,14 @@ def complete_scenario_ids(incomplete: str) -> list[tuple[str, str]]:
     return [(name, title) for name, title in complete_ids(incomplete) if name in CATALOGUE]
 
 
-def parse_directory(text: str) -> Path:
-    """Return the path of a directory; refuse an empty text."""
+def parse_path(text: str) -> Path:
+    """Return a path; expand ``~``, which shells leave alone in ``--out=~/x``. Refuse an empty text."""
     if not text:  # for example an unset shell variable; it would mean the current directory
-        raise InputError("out", text, "must be the path of a directory")
-    return Path(text)
+        raise InputError("path", text, "must not be empty")
+    try:
+        return Path(text).expanduser()
+    except RuntimeError:
+        raise InputError("path", text, "names an unknown user; a name that starts with ~ needs ./") from None
 
 
 _SOURCE_HELP: Final = (

@@ -6,9 +6,11 @@ from typing import Annotated, TypeVar
 
 import typer
 
+from kswarms.agents.common.atomic_files import check_output
 from kswarms.agents.common.errors import InputError
 from kswarms.model.description.arena import Arena
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
+from kswarms.scenarios.cli.options import parse_path
 from kswarms.scenarios.cli.progress import track
 
 _Step = TypeVar("_Step")
@@ -17,15 +19,24 @@ _Step = TypeVar("_Step")
 def report(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Results directory of `kswarms run`.")],
     out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="The report. [default: DIR/report.html]")
+        Path | None,
+        typer.Option(parser=parse_path, metavar="FILE", help="The report. [default: DIR/report.html]"),
     ] = None,
     files: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Also write figures (PNG, SVG) and tables (CSV, Markdown, HTML)."),
+        typer.Option(
+            parser=parse_path,
+            metavar="DIR",
+            help="Also write figures (PNG, SVG) and tables (CSV, Markdown, HTML).",
+        ),
     ] = None,
     findings: Annotated[
         Path | None,
-        typer.Option(metavar="TOML", help="User-defined findings to judge besides those of the thesis."),
+        typer.Option(
+            parser=parse_path,
+            metavar="TOML",
+            help="User-defined findings to judge besides those of the thesis.",
+        ),
     ] = None,
 ) -> None:
     """Write figures, tables and verdicts of all results into one HTML file, readable offline.
@@ -33,11 +44,13 @@ def report(
     Example: kswarms report results --out report.html
     """
     from kswarms.analysis.findings import FINDINGS, read_findings
-    from kswarms.analysis.report import PlannedScenario, build_report
+    from kswarms.analysis.report import PlannedScenario, build_report, check_folder
 
     path = out or directory / "report.html"
-    if out is not None and not path.parent.is_dir():
-        raise InputError("out", str(path), "must be a file in a directory that exists")
+    if out is not None or directory.is_dir():
+        check_output(path, "out")
+    if files is not None:
+        check_folder(files)
     own = read_findings(findings) if findings is not None else ()
     for finding in own:
         if finding.id in {each.id for each in FINDINGS}:

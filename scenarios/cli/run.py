@@ -12,7 +12,7 @@ from kswarms.agents.common.columns import RECORDED_TABLES
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selection import select_scenarios, with_densities_and_seeds
-from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, complete_ids, parse_directory
+from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, complete_ids, parse_path
 from kswarms.scenarios.cli.printing import print_table
 from kswarms.scenarios.cli.progress import ProgressStyle, show_progress
 from kswarms.scenarios.description.scenario import Scenario
@@ -53,7 +53,7 @@ def run(
     out: Annotated[
         Path,
         typer.Option(
-            parser=parse_directory, metavar="DIR", help="Results directory; a study in it is resumed."
+            parser=parse_path, metavar="DIR", help="Results directory; a study in it is resumed."
         ),
     ] = Path("results"),
     record: Annotated[

@@ -32,9 +32,9 @@ swarms = [{ policy = "attack" }, { policy = "attack" }]
         ("run fig-6.1a --seeds 1000001", "seeds=1000001: must be less than or equal to 1000000"),
         (f"run fig-6.1a --densities 6,{10**400}", f"n={shorten(10**400)}: must be at most 1000000"),
         (f"film fig-6.1a --n {10**400}", f"n={shorten(10**400)}: must be at most 1000000"),
-        ("run fig-6.1a --out=", "out='': must be the path of a directory"),
-        ("contribution fig-6.1a --n 6 --out=", "out='': must be the path of a directory"),
-        ("calibrate --out=", "out='': must be the path of a directory"),
+        ("run fig-6.1a --out=", "out='': must not be empty"),
+        ("contribution fig-6.1a --n 6 --out=", "out='': must not be empty"),
+        ("calibrate --out=", "out='': must not be empty"),
         ("calibrate --seeds 99999999", "seeds=99999999: must be less than or equal to 1000"),
         ("calibrate --generations 99999999", "generations=99999999: must be less than or equal to 10000"),
         (

@@ -138,11 +138,11 @@ def test_rows_of_a_batch_run_can_be_drawn_and_reported(tmp_path: Path) -> None:
         ("empty", "results='empty': must be a directory that holds runs.parquet"),
         ("broken", "results='broken/runs.parquet': must be a readable Parquet file"),
         ("corrupt", "results='corrupt/conflicts.parquet': must be a readable Parquet file"),
-        ("good --out nowhere/a.html", "out='nowhere/a.html': must be a file in a directory that exists"),
-        ("good --out empty", "out='empty': must be a writable file"),
+        ("good --out nowhere/a.html", "out='nowhere/a.html': must be a writable file (No such file"),
+        ("good --out empty", "out='empty': must be a file, not a directory"),
         ("good --findings none.toml", "findings='none.toml': must be a readable TOML file"),
         ("good --findings taken.toml", "findings.id='6.1a-alike': must differ from those of the thesis"),
-        ("good --files good/runs.parquet", "files='good/runs.parquet': must be a folder"),
+        ("good --files good/runs.parquet", "files='good/runs.parquet': must be a writable directory"),
     ],
 )
 def test_errors_are_one_line_and_write_nothing(

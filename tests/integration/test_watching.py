@@ -164,7 +164,7 @@ def test_a_compared_run_of_an_unknown_scenario_is_refused() -> None:
         ("film fig-6.1c --speed 0", "speed=0.0: must be greater than 0"),
         ("film fig-6.1c --out a.avi", "out='a.avi': must end with .mp4 or .gif"),
         ("film fig-6.1c --sheet 2 --out a.gif", "out='a.gif': must end with .png"),
-        ("film fig-6.1c --out nowhere/a.gif", "out='nowhere/a.gif': must be in a directory that exists"),
+        ("film fig-6.1c --out nowhere/a.gif", "out='nowhere/a.gif': must be a writable file (No such file"),
         ("film --run 0123", "run='0123': needs a results directory, DIR"),
         ("film --run 0123 nowhere", "results='nowhere': must be a directory"),
         ("conflicts fig-6.1c --n 6 --robot 6", "robot=6: must be in 0 to 5"),

@@ -1,5 +1,6 @@
 """Figures as PNG and SVG files."""
 
+from errno import ENOSPC
 from pathlib import Path
 
 import pytest
@@ -45,10 +46,10 @@ def test_an_interrupted_write_leaves_the_old_figure(tmp_path: Path, monkeypatch:
     def full_disk(part: Path, content: bytes) -> None:
         with part.open("wb") as file:
             file.write(content[:100])
-        raise OSError("No space left on device")
+        raise OSError(ENOSPC, "No space left on device")
 
     monkeypatch.setattr(Path, "write_bytes", full_disk)
-    with pytest.raises(InputError, match=r"must be a writable file \(No space left on device\)"):
+    with pytest.raises(OSError, match=r"No space left on device: '.*/a[.]png'"):
         save_figure(figure(2), path)
     assert path.read_bytes() == old
     assert list(tmp_path.iterdir()) == [path]

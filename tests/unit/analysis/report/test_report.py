@@ -91,11 +91,24 @@ def test_page_and_files_are_written_or_an_error_is_raised(tmp_path: Path) -> Non
     assert (tmp_path / "page.html").read_text() == report.to_html()
     assert report.write_files(tmp_path / "a" / "b") == 5
     names = {path.name for path in (tmp_path / "a" / "b").iterdir()}
-    assert names == {"curve.png", "curve.svg", "numbers.csv", "numbers.md", "numbers.html"}
-    with pytest.raises(InputError, match=r"out=.*must be a writable file"):
+    assert names == {".kswarms-report", "curve.png", "curve.svg", "numbers.csv", "numbers.md", "numbers.html"}
+    with pytest.raises(InputError, match=r"out=.*must be a file, not a directory"):
         report.write_page(tmp_path)
-    with pytest.raises(InputError, match=r"files=.*must be a folder"):
+    with pytest.raises(InputError, match=r"files=.*must be a writable directory"):
         report.write_files(tmp_path / "page.html")
+
+
+def test_files_of_others_are_not_replaced(tmp_path: Path) -> None:
+    mine = tmp_path / "thesis" / "numbers.csv"
+    mine.parent.mkdir()
+    mine.write_text("my numbers")
+    with pytest.raises(InputError, match="or one that kswarms wrote; it has 'numbers"):
+        a_report().write_files(mine.parent)
+    assert [path.read_text() for path in mine.parent.iterdir()] == ["my numbers"]
+    mine.unlink()
+    (mine.parent / ".DS_Store").touch()  # hidden files of a file manager do not count
+    assert a_report().write_files(mine.parent) == 5
+    assert a_report().write_files(mine.parent) == 5, "files of an earlier report are replaced"
 
 
 def test_verdicts_are_counted_and_marked() -> None:
