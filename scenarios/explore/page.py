@@ -7,6 +7,7 @@ next, so a slow browser shows fewer frames and does not fall behind.
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
 from itertools import count
 from typing import Any, Final
 
@@ -18,7 +19,6 @@ from kswarms.scenarios.explore.panels import Panels
 from kswarms.scenarios.explore.playback import SPEEDS
 from kswarms.scenarios.explore.session import Act, Session
 from kswarms.scenarios.explore.views import Json, frame_of, scene_of
-from kswarms.scenarios.runs.run import Run
 
 FRAME_INTERVAL: Final = 1 / 25
 """Minimum time between two frames (s)."""
@@ -33,8 +33,8 @@ _STYLE: Final = """
 .kswarms-swarm { padding: 4px 0 4px 10px; margin: 4px 0; }
 """
 
-start: str | Run = DEFAULT_SCENARIO
-"""Scenario or run of a new page, set by the command line."""
+new_session: Callable[[], Session] = partial(Session, DEFAULT_SCENARIO)
+"""Makes the session of a new page; set by the server."""
 
 
 class Signals:
@@ -70,7 +70,7 @@ def _Arena(
 @solara.component
 def Page() -> None:
     """Show a game and its controls."""
-    session = solara.use_memo(lambda: Session(start), [])
+    session = solara.use_memo(lambda: new_session(), [])
     signals = solara.use_memo(Signals, [])
     solara.use_effect(lambda: _run(session, signals), [])
 

@@ -4,11 +4,14 @@ An invalid control leaves the game unchanged and reports an error.
 """
 
 import math
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterator
+from typing import Any, Final
 
+from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.editing import with_learning
 from kswarms.agents.policies.learner import Learner
+from kswarms.agents.policies.spec import PolicyLike, parse_policies
+from kswarms.model.description.game import Game
 from kswarms.scenarios.catalogue.selection import DEFAULT_N, select_scenarios
 from kswarms.scenarios.description.condition import Condition, SwarmRule
 from kswarms.scenarios.description.text import parse_integers
@@ -21,6 +24,8 @@ from kswarms.scenarios.watch.player import Player
 Act = Callable[[Callable[[], None]], None]
 """Performs an action on the session, then updates the page."""
 
+_NO_CODE: Final = "must not name code or a file; to allow it, start `kswarms explore` with --allow-code"
+
 
 class Session(Playback):
     """The controls of a page and its game.
@@ -28,9 +33,15 @@ class Session(Playback):
     It starts with a scenario (an id or file, as for `select_scenarios`) or with a run. `source` and `title`
     describe either. `conditions` are the conditions of the scenario, by name. `selected` is the number of the
     selected robot, which may be absent. A game that fails at its start raises a `RunError`.
+
+    Without `allow_code`, the controls can name no code and no files except those that `start` names, so that
+    nobody can execute another Python file through the page.
     """
 
-    def __init__(self, start: str | Run) -> None:
+    def __init__(self, start: str | Run, allow_code: bool = False) -> None:
+        self._allow_code = allow_code
+        self._start = start
+        self._own_references: set[str] = set()  # code and files that `start` names
         self.show_sectors = False  # conflict sectors of all robots
         self.show_sensors = True  # sensors of the selected robot
         if isinstance(start, Run):
@@ -39,10 +50,11 @@ class Session(Playback):
             self.conditions: dict[str, Condition] = {}
             self.condition = ""
             self.form = Form.of_game(start.game, start.seed)
+            self._own_references.update(*(_references(swarm.policy) for swarm in start.game.swarms))
         else:
             self._open(start)
             self.form = self._form_of_condition(DEFAULT_N, 0)
-        game = self.form.game()
+        game = self._game()
         with run_errors(f"the game of {self.source}"):
             super().__init__(Player(game, self.form.seed))
         self.selected = self._first_learner()
@@ -101,8 +113,20 @@ class Session(Playback):
         """Return the number that N must be a multiple of."""
         return _step(self.form)
 
+    def _game(self) -> Game:
+        """Return the game of the form; raise `InputError` if it is invalid or names other code."""
+        for swarm in self.form.swarms if not self._allow_code else ():
+            if not self._own_references.issuperset(_references(swarm["policy"])):
+                raise InputError("policy", swarm["policy"], _NO_CODE)
+        return self.form.game()
+
     def _open(self, source: str) -> None:
+        if source.endswith(".toml") and source != self._start and not self._allow_code:
+            raise InputError("id", source, _NO_CODE)
         scenarios = select_scenarios([source])
+        if source == self._start:
+            rules = [rule for scenario in scenarios for each in scenario.conditions for rule in each.swarms]
+            self._own_references.update(*(_references(rule.policy) for rule in rules))
         several = len(scenarios) > 1
         self.source = source
         self.title = "; ".join(scenario.title for scenario in scenarios)
@@ -120,7 +144,7 @@ class Session(Playback):
         """Play the game of a form from its beginning, or report why it is invalid."""
         self.form = form
         with self.report_errors():
-            self.restart(Player(form.game(), form.seed))
+            self.restart(Player(self._game(), form.seed))
             self.selected = min(self.selected, form.n - 1)
 
     def _first_learner(self) -> int:
@@ -128,6 +152,14 @@ class Session(Playback):
         robots = self.player.model.robots
         learners = (robot.number for robot in robots if isinstance(robot.policy, Learner))
         return next(learners, robots[0].number)
+
+
+def _references(policy: PolicyLike) -> Iterator[str]:
+    """Yield the references to user-defined classes and the files of a policy."""
+    for spec in parse_policies(policy):
+        yield from spec.references().values()
+        if (file := spec.arguments.get("file")) is not None:
+            yield str(file)
 
 
 def _step(form: Form) -> int:

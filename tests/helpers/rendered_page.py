@@ -80,7 +80,7 @@ def render_pages(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str | Ru
 
     def render(start: str | Run) -> RenderedPage:
         session = Session(start)
-        monkeypatch.setattr(page, "Session", lambda _: session)
+        monkeypatch.setattr(page, "new_session", lambda: session)
         shown.append(RenderedPage(session))
         return shown[-1]
 

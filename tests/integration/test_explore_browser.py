@@ -1,14 +1,8 @@
 """The page in a browser: it loads, plays, changes, and contacts no other machine."""
 
-import json
-import os
-import shutil
-import signal
-import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -16,49 +10,12 @@ import pyarrow.parquet as pq
 import pytest
 
 from kswarms.scenarios.cli import invoke
-from tests.helpers.interrupts import accept_interrupts
+from tests.helpers.browser import needs_browser, open_browser, requests, webdriver
+from tests.helpers.explore_server import PATIENCE, serve
 
 pytest.importorskip("solara", reason="needs the extra `explore`")
-webdriver = pytest.importorskip("selenium.webdriver", reason="needs selenium, of the extra `test`")
 
-BROWSER, DRIVER = (
-    next((path for name in names if (path := shutil.which(name))), "")
-    for names in (("chromium", "chromium-browser", "google-chrome"), ("chromedriver",))
-)
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(
-        not (BROWSER and DRIVER), reason="needs chromium and chromedriver (apt: chromium-driver)"
-    ),
-]
-
-PATIENCE = 40.0
-"""Timeout of every wait (s), generous for a busy machine."""
-
-
-@contextmanager
-def serve(*arguments: str) -> Iterator[str]:
-    """Start the command and yield the address that it prints."""
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path)}
-    server = subprocess.Popen(
-        [sys.executable, "-m", "kswarms.scenarios.cli", "explore", *arguments, "--no-browser", "--port", "0"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=environment,
-        preexec_fn=accept_interrupts,
-    )
-    assert server.stdout is not None
-    assert server.stderr is not None
-    line = server.stdout.readline()
-    try:
-        assert line.startswith("page: http://localhost:"), server.stderr.read()
-        yield line.split()[1]
-    finally:
-        server.send_signal(signal.SIGINT)
-        errors = server.communicate(timeout=PATIENCE)[1]
-    assert server.returncode == 130
-    assert errors == "kswarms: interrupted\n"
+pytestmark = [pytest.mark.slow, needs_browser]
 
 
 @pytest.fixture(scope="module")
@@ -70,14 +27,8 @@ def address() -> Iterator[str]:
 class Browser:
     """A page open in Chromium."""
 
-    def __init__(self, address: str, size: tuple[int, int]) -> None:
-        options = webdriver.ChromeOptions()
-        options.binary_location = BROWSER
-        flags = ("headless=new", "no-sandbox", "disable-dev-shm-usage", "disable-background-networking")
-        for argument in flags:
-            options.add_argument(f"--{argument}")
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-        self.driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
+    def __init__(self, driver: Any, address: str, size: tuple[int, int]) -> None:
+        self.driver = driver
         self.script = self.driver.execute_script
         self.driver.set_window_size(*size)
         self.driver.get(address)
@@ -135,27 +86,17 @@ class Browser:
 
     def requests(self) -> list[str]:
         """Return the addresses that the page requested, over HTTP and WebSocket."""
-        requested = []
-        for entry in self.driver.get_log("performance"):
-            message = json.loads(entry["message"])["message"]
-            if message["method"] == "Network.requestWillBeSent":
-                requested.append(message["params"]["request"]["url"])
-            elif message["method"] == "Network.webSocketCreated":
-                requested.append(message["params"]["url"])
-        return requested
+        return [request.url for request in requests(self.driver)]
 
 
 @pytest.fixture
 def browse(address: str) -> Iterator[Callable[..., Browser]]:
-    opened: list[Browser] = []
+    with ExitStack() as opened:
 
-    def browse(size: tuple[int, int] = (1360, 950), address: str = address) -> Browser:
-        opened.append(Browser(address, size))
-        return opened[-1]
+        def browse(size: tuple[int, int] = (1360, 950), address: str = address) -> Browser:
+            return Browser(opened.enter_context(open_browser()), address, size)
 
-    yield browse
-    for browser in opened:
-        browser.driver.quit()
+        yield browse
 
 
 def test_the_page_plays_changes_and_shows_a_learner(browse: Callable[..., Browser], address: str) -> None:
@@ -200,7 +141,7 @@ def test_the_page_plays_changes_and_shows_a_learner(browse: Callable[..., Browse
 
     assert browser.complaints() == []
     requests = [url for url in browser.requests() if not url.startswith("data:")]
-    host = address.removeprefix("http://").rstrip("/")
+    host = address.split("/")[2]
     assert len(requests) > 10
     assert [url for url in requests if url.split("/")[2] != host] == []
 

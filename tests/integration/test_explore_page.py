@@ -3,9 +3,12 @@
 import gc
 import queue
 import socket
+import stat
 import threading
 import weakref
 from collections.abc import Callable
+from functools import partial
+from pathlib import Path
 
 import pytest
 
@@ -160,25 +163,31 @@ def test_a_page_is_served_at_the_printed_address(monkeypatch: pytest.MonkeyPatch
 
     from kswarms.scenarios.explore import server
 
-    opened = threading.Event()
+    opened: queue.Queue[str] = queue.Queue()
     announced: queue.Queue[str] = queue.Queue()
+    links: list[Path] = []
 
     def run(own: uvicorn.Server, sockets: list[socket.socket]) -> None:
         own.started = True
         (listener,) = sockets
-        assert announced.get(timeout=10) == f"http://localhost:{listener.getsockname()[1]}"
-        assert opened.wait(10)
+        address = f"http://127.0.0.1:{listener.getsockname()[1]}/?token={own.config.app.token}"
+        assert announced.get(timeout=10) == address
+        # The command line of a browser, which all users see, has no token.
+        links.append(Path(opened.get(timeout=10).removeprefix("file://")))
+        assert address in links[0].read_text()
+        assert stat.S_IMODE(links[0].parent.stat().st_mode) == 0o700
 
     monkeypatch.setattr(uvicorn.Server, "run", run)
-    monkeypatch.setattr(server.webbrowser, "open", lambda address: opened.set())
-    server.serve("fig-6.2", 0, True, announced.put)
-    assert page.start == "fig-6.2"
+    monkeypatch.setattr(server.webbrowser, "open", opened.put)
+    server.serve(new_session := partial(Session, "fig-6.2"), 0, True, announced.put)
+    assert page.new_session is new_session
+    assert not links[0].parent.exists()
     assert not settings.telemetry.mixpanel_enable
     with (
         socket.create_server(("127.0.0.1", 0)) as taken,
         pytest.raises(InputError, match="must be a free port"),
     ):
-        server.serve("fig-6.2", taken.getsockname()[1], False, announced.put)
+        server.serve(new_session, taken.getsockname()[1], False, announced.put)
 
 
 def test_a_page_that_is_closed_ends_its_thread_and_frees_its_game(

@@ -1,9 +1,8 @@
 """The command `report`: content, errors, and display in a browser."""
 
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import mesa
 import pytest
@@ -15,11 +14,9 @@ from kswarms.model.foraging import ForagingModel
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.study.study import Study
+from tests.helpers.browser import needs_browser, open_browser
 from tests.helpers.html_page import Page
 from tests.helpers.result_rows import MET, robots, runs_of
-
-if TYPE_CHECKING:
-    from selenium.webdriver import Chrome
 
 # Two swarms, panels, a table of the source, three swarms, the comparison with ARGoS.
 SHUSER_FINDING = ("fig-6.1c", "fig-6.3", "fig-6.4a", "fig-7.10", "argos-avoid-attack")
@@ -164,30 +161,14 @@ def test_errors_are_one_line_and_write_nothing(
     assert sorted(tmp_path.rglob("*")) == before
 
 
-CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
-
-
 @pytest.fixture(scope="module")
-def browser() -> Iterator["Chrome"]:
+def browser() -> Iterator[Any]:
     """Start a headless Chromium that logs the messages of pages."""
-    if CHROMIUM is None or DRIVER is None:
-        pytest.skip("needs chromium and chromedriver: apt-get install chromium chromium-driver")
-    from selenium import webdriver
-
-    options = webdriver.ChromeOptions()
-    options.binary_location = CHROMIUM
-    # Chromium's sandbox does not start for root.
-    for argument in ("headless=new", "no-sandbox", "disable-gpu", "disable-dev-shm-usage", "hide-scrollbars"):
-        options.add_argument(f"--{argument}")
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
-    try:
+    with open_browser() as driver:
         yield driver
-    finally:
-        driver.quit()
 
 
-def open_at(browser: "Chrome", path: Path, width: int, dark: bool = False) -> None:
+def open_at(browser: Any, path: Path, width: int, dark: bool = False) -> None:
     size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 500}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
@@ -195,7 +176,7 @@ def open_at(browser: "Chrome", path: Path, width: int, dark: bool = False) -> No
     browser.get(path.resolve().as_uri())
 
 
-def problems(browser: "Chrome") -> dict[str, Any]:
+def problems(browser: Any) -> dict[str, Any]:
     """Return the problems of the current page."""
     found: dict[str, Any] = browser.execute_script("""
         const page = document.documentElement;
@@ -209,19 +190,21 @@ def problems(browser: "Chrome") -> dict[str, Any]:
     return found | {"console": browser.get_log("browser")}
 
 
+@needs_browser
 @pytest.mark.slow
 @pytest.mark.parametrize("width", [1280, 390])
 @pytest.mark.parametrize("source", ["results", "recorded"])
 def test_a_browser_shows_the_report_without_problems(
-    browser: "Chrome", source: str, width: int, pages: dict[str, Path]
+    browser: Any, source: str, width: int, pages: dict[str, Path]
 ) -> None:
     open_at(browser, pages[source], width)
     assert problems(browser) == {"broken": [], "overflow": 0, "unlabelled": 0, "console": []}
     assert browser.execute_script("return document.images.length") > 5
 
 
+@needs_browser
 @pytest.mark.slow
-def test_the_page_has_a_dark_colour_scheme(browser: "Chrome", pages: dict[str, Path]) -> None:
+def test_the_page_has_a_dark_colour_scheme(browser: Any, pages: dict[str, Path]) -> None:
     colours = []
     for dark in (False, True):
         open_at(browser, pages["recorded"], 1280, dark)
@@ -229,8 +212,9 @@ def test_the_page_has_a_dark_colour_scheme(browser: "Chrome", pages: dict[str, P
     assert colours == ["rgb(255, 255, 255)", "rgb(22, 24, 27)"]
 
 
+@needs_browser
 @pytest.mark.slow
-def test_problems_of_a_broken_page_are_found(browser: "Chrome", tmp_path: Path) -> None:
+def test_problems_of_a_broken_page_are_found(browser: Any, tmp_path: Path) -> None:
     path = tmp_path / "broken.html"
     path.write_text(
         "<!doctype html><meta name=viewport content='width=device-width, initial-scale=1'>"

@@ -196,7 +196,8 @@ def test_an_invalid_text_does_not_break_the_other_controls(session: Session) -> 
     assert session.error.startswith("parameters='fited': must begin with one of")
 
 
-def test_a_user_defined_policy_plays(session: Session, tmp_path: Path) -> None:
+def test_a_user_defined_policy_plays(tmp_path: Path) -> None:
+    session = Session("fig-6.1c", allow_code=True)
     file = tmp_path / "mine.py"
     file.write_text(COWARD)
     session.change_swarm(1, policy=f"{file}:Coward")
@@ -210,8 +211,9 @@ def test_a_user_defined_policy_plays(session: Session, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("back", [Session.reset, lambda session: session.go_to(1.0)])
 def test_a_game_that_cannot_be_rewound_keeps_its_state_until_it_can(
-    back: Callable[[Session], None], session: Session, tmp_path: Path
+    back: Callable[[Session], None], tmp_path: Path
 ) -> None:
+    session = Session("fig-6.1c", allow_code=True)
     file = tmp_path / "mine.py"
     file.write_text(COWARD)
     session.change_swarm(1, policy=f"{file}:Coward")
