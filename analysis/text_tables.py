@@ -11,6 +11,8 @@ from typing import Final
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from kswarms.agents.common.quoting import for_markdown
+
 MISSING: Final = "–"
 """Text of a missing number."""
 
@@ -51,7 +53,7 @@ class TextTable:
         rule = ["--:" if number else "---" for number in self.classes()]
         lines = [_markdown_row(self.header), f"|{'|'.join(rule)}|", *map(_markdown_row, self.rows)]
         if self.caption:
-            lines += ["", " ".join(self.caption.splitlines())]
+            lines += ["", for_markdown(self.caption)]
         return "\n".join(lines) + "\n"
 
     def to_html(self) -> str:
@@ -76,6 +78,4 @@ def span(low: int, high: int) -> str:
 
 
 def _markdown_row(cells: Sequence[str]) -> str:
-    # An unescaped bar ends the cell; a line break ends the table.
-    escaped = [cell.replace("|", "\\|").replace("\n", " ") for cell in cells]
-    return f"| {' | '.join(escaped)} |"
+    return f"| {' | '.join(map(for_markdown, cells))} |"

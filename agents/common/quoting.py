@@ -12,9 +12,8 @@ LONGEST_FILE_NAME: Final = 150
 """Maximum length of a result of `for_file_name` (bytes of UTF-8); file systems allow 255."""
 
 _FORMULA: Final = re.compile(r"\s*[=+\-@\uff1d\uff0b\uff0d\uff20]")  # wide letters too
-_MARKDOWN: Final = re.compile(
-    r"[\\`*\[\]<>|&~$]|(?<![^\W_])_|_(?![^\W_])"
-)  # underscores within words are text
+# Not underscores within words, and only ampersands of entities.
+_MARKDOWN: Final = re.compile(r"[\\`*\[\]<|~$]|&(?=#?\w+;)|(?<![^\W_])_|_(?![^\W_])")
 _FOREIGN: Final = re.compile(r"[^\w .,=+()@%-]+")
 _DIGEST_LENGTH: Final = 8
 
@@ -87,7 +86,7 @@ def for_markdown(text: str) -> str:
     Examples
     --------
     >>> print(for_markdown("a|b <i>"))
-    a\|b \<i\>
+    a\|b \<i>
     """
     return _MARKDOWN.sub(r"\\\g<0>", for_terminal(" ".join(text.splitlines())))
 

@@ -6,6 +6,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from kswarms.agents.common.quoting import for_file_name
 from kswarms.analysis.figures.files import save_figure
 from kswarms.analysis.figures.style import LineStyle, heading, legend_below, new_figure, swarm_style
 from kswarms.analysis.measures.contribution import (
@@ -82,6 +83,7 @@ def write_contribution_figure(directory: Path, title: str = "", **selection: obj
     table cannot be read or the figure cannot be written; then an existing file is unchanged.
     """
     rows = select_contributions(read_contributions(directory), **selection)
-    path = directory / "figures" / f"contribution-{rows['scenario'].iloc[0]}.png"
+    name = for_file_name(f"contribution-{rows['scenario'].iloc[0]}")
+    path = directory / "figures" / f"{name}.png"
     save_figure(contribution_figure(rows, title), path)
     return path

@@ -11,7 +11,13 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from kswarms.analysis.figures.style import CONDITION_COLOURS, condition_style, legend_below, new_figure
+from kswarms.analysis.figures.style import (
+    CONDITION_COLOURS,
+    condition_style,
+    figure_text,
+    legend_below,
+    new_figure,
+)
 from kswarms.analysis.measures.emergence import BANDIT, arm_values, choices, preferences
 
 
@@ -121,7 +127,7 @@ def preferences_figure(robots: pd.DataFrame, title: str = "") -> Figure:
             axes.scatter(x, arm["q"], color=style.colour, marker=style.marker, s=22, label=action)
         learned = best["action"].value_counts(normalize=True).sort_index()
         shares = ", ".join(f"{action} {share:.0%}" for action, share in learned.items())
-        axes.set(title=f"{_bandit_name(bandit)}; best: {shares}", xticks=[])
+        axes.set(title=figure_text(f"{_bandit_name(bandit)}; best: {shares}"), xticks=[])
 
     xlabel, legend = "robots, sorted by best action and its Q", "all arms of a robot are on one vertical line"
     return _panels(rows, draw, title, "Q at the end (reward per second)", xlabel, legend)

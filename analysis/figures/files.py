@@ -6,11 +6,11 @@ from io import BytesIO
 from pathlib import Path
 from typing import Final, NamedTuple
 
-import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from kswarms.agents.common.atomic_files import output_path
 from kswarms.agents.common.errors import InputError
+from kswarms.analysis.figures.style import default_settings
 
 DOTS_PER_INCH: Final = 150
 FORMATS: Final = ("png", "svg")
@@ -35,7 +35,7 @@ def encode(figure: Figure, kind: str) -> bytes:
         raise InputError("format", kind, f"must be one of {', '.join(FORMATS)}")
     content = BytesIO()
     # By default an SVG contains the date and random identifiers.
-    with mpl.rc_context({"svg.hashsalt": "kswarms"}), warnings.catch_warnings():
+    with default_settings({"svg.hashsalt": "kswarms"}), warnings.catch_warnings():
         # The font may lack the script of a user's title; the figure then shows boxes.
         warnings.filterwarnings("ignore", "Glyph .* missing from font")
         metadata = {"Date": None} if kind == "svg" else None

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from kswarms.agents.theory.games import MET, NATURE, OWN, NormalForm
 from kswarms.analysis.colours import swarm_colour
+from kswarms.analysis.figures.style import LITERAL_TEXT, default_settings
 
 _NODE_STYLES: Final = {
     NATURE: ("o", 9, "0.35"),
@@ -27,6 +28,7 @@ _MATRICES_PER_LINE: Final = 3
 _LABEL: Final = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none"}
 
 
+@default_settings(LITERAL_TEXT)
 def draw_extensive_form(tree: nx.DiGraph) -> Figure:
     """Draw the tree of an interaction, from left to right (Fig. 3.1).
 
@@ -72,6 +74,7 @@ def draw_extensive_form(tree: nx.DiGraph) -> Figure:
     return figure
 
 
+@default_settings(LITERAL_TEXT)
 def draw_polymatrix(graph: nx.Graph) -> Figure:
     """Draw the graph of the games between K swarms, and the payoff matrix of each game below it.
 

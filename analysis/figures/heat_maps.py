@@ -12,7 +12,7 @@ from matplotlib.patches import Circle
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.colours import swarm_colour
-from kswarms.analysis.figures.style import new_figure
+from kswarms.analysis.figures.style import figure_text, new_figure
 from kswarms.analysis.film.painter import ArenaLayout
 from kswarms.analysis.measures.conflict_density import CELL, conflict_density
 
@@ -56,7 +56,7 @@ def heat_map_figure(conflicts: pd.DataFrame, title: str = "", arena: ArenaLayout
             counts = conflict_density(rows, half) * (rows["run"].nunique() / games if "run" in rows else 1)
             cells, extent = np.ma.masked_equal(counts, 0), (-half, half, -half, half)
             image = axes.imshow(cells, norm=norm, cmap=colours, origin="lower", extent=extent)
-            axes.set(title=name, xticks=ticks, yticks=ticks, xlabel="x (m)", ylabel="y (m)")
+            axes.set(title=figure_text(name), xticks=ticks, yticks=ticks, xlabel="x (m)", ylabel="y (m)")
             axes.label_outer()
             axes.grid(False)
             if arena is not None:

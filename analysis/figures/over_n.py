@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.quoting import for_file_name
 from kswarms.analysis.figures.files import save_figure
 from kswarms.analysis.figures.style import (
     LineStyle,
@@ -164,7 +165,7 @@ def write_figures(
     scenarios: Sequence[str] | None = None,
     titles: Mapping[str, str] | None = None,
 ) -> list[Path]:
-    """Write the figure of each scenario of the results as `<id>.png`.
+    """Write the figure of each scenario of the results as `<id>.png`, see `for_file_name`.
 
     Parameters
     ----------
@@ -192,6 +193,6 @@ def write_figures(
     paths = []
     for scenario in present if scenarios is None else scenarios:
         if scenario in present:
-            paths.append(out / f"{scenario}.png")
+            paths.append(out / f"{for_file_name(scenario)}.png")
             save_figure(figure_of(runs, scenario, (titles or {}).get(scenario, "")), paths[-1])
     return paths

@@ -5,7 +5,7 @@ points show the single seeds. Line styles are those of the source: S1 green, das
 dashed, filled circles; S3 blue, dash-dotted, triangles.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -18,6 +18,7 @@ import seaborn as sns
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from kswarms.agents.common.quoting import for_terminal
 from kswarms.analysis.colours import swarm_colour
 from kswarms.analysis.measures.quantities import Curve
 from kswarms.analysis.statistics.intervals import min_seeds
@@ -27,10 +28,13 @@ from kswarms.analysis.text_tables import span
 CONDITION_COLOURS: Final = tuple(sns.color_palette("colorblind").as_hex())
 _CONDITION_MARKERS: Final = "os^DvPX"
 
+LITERAL_TEXT: Final = {"text.parse_math": False}
+"""Setting for names of users, which may contain dollar signs."""
 _MAX_TICKS: Final = 16
 """Maximum number of ticks; with more densities, matplotlib chooses the ticks."""
 _MAX_GAP: Final = 4
 """Maximum gap between densities (robots); single seeds are shifted by at most a quarter of the gap."""
+_LONGEST_HEADING: Final = 450
 _LEGEND_LINE, _LETTER = 0.75, 0.08
 """Width of the line and of a letter in a legend (inches)."""
 
@@ -125,16 +129,35 @@ def heading(scenario: str, title: str) -> str:
 
 
 @contextmanager
+def default_settings(changes: Mapping[Any, Any] | None = None) -> Iterator[None]:
+    """Use matplotlib's default settings with some changes, then restore those of the user.
+
+    So neither a user's `matplotlibrc` nor a notebook changes figures of the package.
+    """
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        mpl.rcParams.update(changes or {})
+        yield
+
+
+@contextmanager
 def new_figure(title: str, width: float = 7.0, height: float = 4.9) -> Iterator[Figure]:
     """Yield a new figure with a heading, in the style of the package; width and height are in inches."""
     with (
+        default_settings(LITERAL_TEXT),
         sns.axes_style("whitegrid", rc={"grid.color": "0.9"}),
         sns.plotting_context("notebook", font_scale=0.9),
-        mpl.rc_context({"text.parse_math": False}),  # titles of users may contain a dollar sign
     ):
         figure = Figure(figsize=(width, height), layout="constrained")
-        figure.suptitle(fill(title, width=int(10 * width), break_on_hyphens=False))
+        heading_text = figure_text(title, _LONGEST_HEADING)
+        figure.suptitle(fill(heading_text, width=int(10 * width), break_on_hyphens=False))
         yield figure
+
+
+def figure_text(text: str, longest: int = 200) -> str:
+    """Return a name as one line for a figure, with escaped control characters, cut to `longest` letters."""
+    line = for_terminal(text[: longest + 1])
+    return line if len(line) <= longest else f"{line[: longest - 1]}…"
 
 
 def legend_below(figure: Figure, title: str = "") -> None:
@@ -144,10 +167,11 @@ def legend_below(figure: Figure, title: str = "") -> None:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             entries.setdefault(label, handle)
     width = figure.get_figwidth() - _LEGEND_LINE
-    column = _LEGEND_LINE + _LETTER * max(map(len, entries), default=0)
+    labels = [figure_text(label) for label in entries]
+    column = _LEGEND_LINE + _LETTER * max(map(len, labels), default=0)
     figure.legend(
         list(entries.values()),
-        [fill(label, width=int(width / _LETTER), break_on_hyphens=False) for label in entries],
+        [fill(label, width=int(width / _LETTER), break_on_hyphens=False) for label in labels],
         title=title,
         loc="outside lower center",
         ncols=max(1, min(len(entries), 3, int(figure.get_figwidth() / column))),

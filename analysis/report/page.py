@@ -5,8 +5,11 @@ file that needs no network: images and downloads are data URIs, and there is no 
 """
 
 import base64
-from collections.abc import Sequence
+import csv
+import re
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, field
+from itertools import chain, count
 from pathlib import Path
 from typing import Final
 from urllib.parse import quote
@@ -16,6 +19,7 @@ from matplotlib.figure import Figure
 
 from kswarms.agents.common.atomic_files import check_directory
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.quoting import for_cell, for_file_name
 from kswarms.analysis.figures.files import EncodedFigure, encode_all, write_file
 from kswarms.analysis.text_tables import TEMPLATES, TextTable
 
@@ -62,9 +66,11 @@ class PageTable:
     @property
     def files(self) -> dict[str, bytes]:
         """Contents of the CSV, Markdown and HTML files, by file name."""
-        csv, markdown, html = self.frame.to_csv(index=False), self.table.to_markdown(), self.table.to_html()
-        texts = {"csv": csv, "md": markdown, "html": html}
-        return {f"{self.name}.{kind}": text.encode() for kind, text in texts.items()}
+        cells = self.frame.map(lambda value: for_cell(value) if isinstance(value, str) else value)
+        # Quotation marks keep a text with a semicolon in one cell: some spreadsheets separate cells there.
+        texts = {"csv": cells.to_csv(index=False, quoting=csv.QUOTE_NONNUMERIC)}
+        texts |= {"md": self.table.to_markdown(), "html": self.table.to_html()}
+        return {f"{self.name}.{kind}": _encode(text) for kind, text in texts.items()}
 
     @property
     def downloads(self) -> dict[str, str]:
@@ -78,12 +84,15 @@ class Part:
     """A section of a chapter: paragraphs, figures, tables and preformatted text, in this order."""
 
     id: str
-    """Anchor in the page."""
+    """Anchor in the page; it becomes a valid one."""
     title: str
     text: list[str] = field(default_factory=list)
     figures: list[PageFigure] = field(default_factory=list)
     tables: list[PageTable] = field(default_factory=list)
     preformatted: str = ""
+
+    def __post_init__(self) -> None:
+        self.id = re.sub(r"\s", "-", for_file_name(self.id))
 
     @property
     def files(self) -> dict[str, bytes]:
@@ -92,12 +101,12 @@ class Part:
         return {name: content for item in items for name, content in item.files.items()}
 
     def add_figure(self, name: str, figure: Figure, alt: str, caption: str) -> None:
-        """Encode a figure and add it."""
-        self.figures.append(PageFigure(name, encode_all(figure), alt, caption))
+        """Encode a figure and add it; its files are named after `name`."""
+        self.figures.append(PageFigure(for_file_name(name), encode_all(figure), alt, caption))
 
     def add_table(self, name: str, title: str, table: TextTable, frame: pd.DataFrame) -> None:
-        """Add a table."""
-        self.tables.append(PageTable(name, title, table, frame))
+        """Add a table; its files are named after `name`."""
+        self.tables.append(PageTable(for_file_name(name), title, table, frame))
 
 
 @dataclass(frozen=True)
@@ -123,7 +132,7 @@ class Report:
 
     def write_page(self, path: Path) -> None:
         """Write the page; `InputError` if `path` is not writable. After an error an old file is unchanged."""
-        write_file(path, self.to_html().encode(), "out")
+        write_file(path, _encode(self.to_html()), "out")
 
     def write_files(self, folder: Path) -> int:
         """Write figures as PNG and SVG, tables as CSV, Markdown and HTML; return the number of files.
@@ -137,7 +146,11 @@ class Report:
         except OSError as error:
             raise InputError("files", str(folder), f"must be a directory ({error.strerror})") from error
         parts = [part for chapter in self.chapters for part in chapter.parts]
-        contents = {name: content for part in parts for name, content in part.files.items()}
+        contents: dict[str, bytes] = {}
+        for part in parts:
+            for name, content in part.files.items():
+                stem, _, kind = name.rpartition(".")
+                contents[unused_name(stem, contents, f".{kind}")] = content
         for name, content in {_MARK: b"Files of kswarms\n", **contents}.items():
             write_file(folder / name, content, "files")
         return len(contents)
@@ -146,3 +159,14 @@ class Report:
 def check_folder(folder: Path) -> None:
     """Raise an `InputError` unless a folder for files of reports is new, empty or has files of a report."""
     check_directory(folder, "files", [_MARK])
+
+
+def unused_name(name: str, used: Container[str], suffix: str = "") -> str:
+    """Return a name with its suffix; a number is added if it is used."""
+    numbered = (f"{name}{number}{suffix}" for number in chain([""], (f"-{k}" for k in count(2))))
+    return next(each for each in numbered if each not in used)
+
+
+def _encode(text: str) -> bytes:
+    """Encode as UTF-8; lone surrogates, which stand for other bytes in paths, become escapes."""
+    return text.encode("utf-8", "backslashreplace")

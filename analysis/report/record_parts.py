@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
+from kswarms.agents.common.quoting import for_file_name
 from kswarms.analysis.figures import emergence, heat_maps, networks
 from kswarms.analysis.film.painter import ArenaLayout
 from kswarms.analysis.measures.networks import describe_network, jams, meeting_network
@@ -61,7 +62,7 @@ class RecordedCondition:
     @property
     def id(self) -> str:
         """The name as part of anchors and file names; special characters become hyphens."""
-        return "".join(character if character.isalnum() else "-" for character in self.name)
+        return for_file_name("".join(each if each.isalnum() else "-" for each in self.name))
 
     @property
     def densest(self) -> pd.DataFrame:

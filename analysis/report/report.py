@@ -11,7 +11,7 @@ import pandas as pd
 
 from kswarms.analysis.findings import FINDINGS, NO_DATA, Finding, judge_all
 from kswarms.analysis.report.coverage import PlannedScenario, coverage, coverage_table
-from kswarms.analysis.report.page import Chapter, Part, Report
+from kswarms.analysis.report.page import Chapter, Part, Report, unused_name
 from kswarms.analysis.report.provenance import directory_parts, libraries_part
 from kswarms.analysis.report.record_parts import ArenaOf, conflict_parts, recorded_conditions, robots_parts
 from kswarms.analysis.report.scenario_parts import (
@@ -115,6 +115,10 @@ def build_report(
         missing.add_table("coverage", "Games of each scenario", coverage_table(covered), covered)
         parts["missing"] = [missing]
     chapters = [Chapter(_anchor(title), title, parts[key]) for key, title in _TITLES.items() if parts[key]]
+    used = {"content", *(chapter.id for chapter in chapters)}
+    for part in (part for chapter in chapters for part in chapter.parts):
+        part.id = unused_name(part.id, used)
+        used.add(part.id)
     return Report(f"Report on {name}", _summary(results, covered), chapters)
 
 

@@ -48,13 +48,14 @@ def scenario_part(results: Results, scenario: str, title: str, missing: str, tab
         part.add_figure(name, figure, alt, f"{shown[0].upper()}{shown[1:]}: {content}.")
     part.add_table(scenario, f"Numbers of {scenario}", scores.scores_table(frame), frame)
     if results.policies is not None and scenario in set(results.policies["scenario"]):
-        _add_learned(part, results.runs, learned_shares(results.policies, [scenario]), title, table)
+        _add_learned(part, scenario, results.runs, learned_shares(results.policies, [scenario]), title, table)
     return part
 
 
-def _add_learned(part: Part, runs: pd.DataFrame, cells: pd.DataFrame, title: str, table: str) -> None:
+def _add_learned(
+    part: Part, scenario: str, runs: pd.DataFrame, cells: pd.DataFrame, title: str, table: str
+) -> None:
     """Add the figure of the learned policies, and their table unless the source has one."""
-    scenario = part.id
     name = table or f"{scenario}-learned"
     conditions = list(dict.fromkeys(runs.loc[runs["scenario"] == scenario, "condition"]))
     published = "; crosses: published" if cells["published"].notna().any() else ""

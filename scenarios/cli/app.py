@@ -3,6 +3,7 @@
 A command's module is imported when the command is called, so that help and shell completion start fast.
 """
 
+import os
 import signal
 import sys
 from collections.abc import Sequence
@@ -74,6 +75,7 @@ for _name, (_, _, _short) in COMMANDS.items():
 def main() -> None:
     """Run the command line and exit with its status."""
     prepare_streams()
+    os.environ["MPLBACKEND"] = "agg"  # no window opens; matplotlib's import would fail for an unknown name
     status = invoke()
     if error := flush_output():
         status = status or _print_error(str(error), 1)

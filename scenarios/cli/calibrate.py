@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from kswarms.scenarios.cli.options import CPUS, Jobs, parse_path
+from kswarms.scenarios.cli.printing import print_line
 from kswarms.scenarios.cli.progress import play_tracked
 from kswarms.scenarios.description.text import parse_integers, split_words
 from kswarms.scenarios.runs.run import Run
@@ -69,8 +70,8 @@ def calibrate(
     report = partial(typer.echo, err=True)
     trace = fit.calibrate(setup, target, partial(_play, jobs), bootstrap_interval, out, fresh, report)
     for line in fit.summary(trace):
-        typer.echo(line)
-    typer.echo(f"trace:      {out / fit.TRACE}")
+        print_line(line)
+    print_line(f"trace:      {out / fit.TRACE}")
 
 
 def _play(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, float], None, None]:

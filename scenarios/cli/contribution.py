@@ -9,7 +9,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.limits import MAX_SEEDS
 from kswarms.scenarios.catalogue.selection import select_scenarios
 from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, complete_scenario_ids, parse_path
-from kswarms.scenarios.cli.printing import print_table
+from kswarms.scenarios.cli.printing import print_line, print_table
 from kswarms.scenarios.cli.progress import play_tracked
 
 
@@ -71,10 +71,10 @@ def contribution(
         play=lambda runs: play_tracked(runs, jobs, RECORD, "playing"),
         time_sud=time_sud,
     )
-    typer.echo(f"table:  {write_table(out, found)}")
+    print_line(f"table:  {write_table(out, found)}")
     question: dict[str, Any] = {"condition": name, "n": n, "absent_from": absent_from}
     figure = write_contribution_figure(out, scenario.title, scenario=scenario.id, **question)
-    typer.echo(f"figure: {figure}")
+    print_line(f"figure: {figure}")
     rows = select_contributions(read_contributions(out), scenario=scenario.id, **question)
     for heading, (header, *lines) in contribution_tables(rows):
         print_table(heading, header, lines)

@@ -10,6 +10,7 @@ from PIL.Image import Image
 
 from kswarms.agents.common.atomic_files import check_output
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.quoting import for_file_name
 from kswarms.analysis.film.files import check_film, write_film, write_sheet
 from kswarms.analysis.film.painter import ArenaPainter
 from kswarms.scenarios.cli.options import (
@@ -22,6 +23,7 @@ from kswarms.scenarios.cli.options import (
     parse_path,
     resolve_run,
 )
+from kswarms.scenarios.cli.printing import print_line
 from kswarms.scenarios.cli.progress import track
 from kswarms.scenarios.runs.run import Run
 
@@ -85,7 +87,7 @@ def film(
         write_film(out, frames, fps)
     else:
         write_sheet(out, list(frames))
-    typer.echo(f"{'film' if sheet is None else 'sheet'}: {out}")
+    print_line(f"{'film' if sheet is None else 'sheet'}: {out}")
 
 
 def _check(field: str, value: object, allowed: bool, rule: str) -> None:
@@ -95,8 +97,8 @@ def _check(field: str, value: object, allowed: bool, rule: str) -> None:
 
 def _file_name(run: Run) -> str:
     scenario, condition = run.labels[0]
-    name = "-".join(part for part in (scenario, condition, f"n{run.n}", f"seed{run.seed}") if part)
-    return name.replace("/", "-")  # a condition's name may contain any character
+    parts = (scenario, condition, f"n{run.n}", f"seed{run.seed}")
+    return for_file_name("-".join(part for part in parts if part))
 
 
 def _frames(run: Run, instants: list[float], size: int) -> Iterator[Image]:

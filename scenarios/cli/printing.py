@@ -5,8 +5,15 @@ from typing import Final
 
 import typer
 
+from kswarms.agents.common.quoting import for_terminal
+
 _ANY_WIDTH: Final = 1000
 """Width of the console (characters). In a pipe, rich would wrap cells at 80 columns."""
+
+
+def print_line(text: str, err: bool = False) -> None:
+    """Print a text as one line, on standard error if `err`; control characters in names are escaped."""
+    typer.echo(for_terminal(text), err=err)
 
 
 def print_table(title: str, header: Sequence[str], rows: Iterable[Sequence[str]], caption: str = "") -> None:
@@ -16,16 +23,23 @@ def print_table(title: str, header: Sequence[str], rows: Iterable[Sequence[str]]
 
     table = Table()
     for heading in header:
-        table.add_column(heading, justify="right")
+        table.add_column(_quote_lines(heading), justify="right")
     for cells in rows:
-        table.add_row(*cells)
-    below = [caption] if caption else []
-    Console(width=_ANY_WIDTH, highlight=False).print(f"\n{title}", table, *below, sep="\n")
+        table.add_row(*map(for_terminal, cells))
+    below = [_quote_lines(caption)] if caption else []
+    # Without markup, "[red]" in a name is text.
+    console = Console(width=_ANY_WIDTH, highlight=False, markup=False, emoji=False)
+    console.print(f"\n{for_terminal(title)}", table, *below, sep="\n")
+
+
+def _quote_lines(text: str) -> str:
+    return "\n".join(map(for_terminal, text.split("\n")))
 
 
 def print_columns(rows: Sequence[Sequence[str]], left: Iterable[int]) -> None:
     """Print rows of equal length in columns; the columns in `left` are left-aligned, others right-aligned."""
     lefts = set(left)
+    rows = [[for_terminal(cell) for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
         cells = (

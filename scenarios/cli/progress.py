@@ -109,9 +109,12 @@ def _bar(count: Count) -> Iterator[Callable[[str], None]]:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn
 
-    state = TextColumn("{task.fields[state]}")
+    state = TextColumn("{task.fields[state]}", markup=False)
     with Progress(
-        TextColumn("{task.description}"), BarColumn(), state, console=Console(file=_standard_error())
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        state,
+        console=Console(file=_standard_error()),
     ) as progress:
         task = progress.add_task("starting", total=count.work, state=f"0/{count.total} runs")
 

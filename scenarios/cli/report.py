@@ -11,6 +11,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.model.description.arena import Arena
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.cli.options import parse_path
+from kswarms.scenarios.cli.printing import print_line
 from kswarms.scenarios.cli.progress import track
 
 _Step = TypeVar("_Step")
@@ -63,9 +64,9 @@ def report(
         directory, plan, TABLES, findings=(*FINDINGS, *own), arena_of=_arena, progress=_progress
     )
     if files is not None:
-        typer.echo(f"files:  {files} ({built.write_files(files)} files)")
+        print_line(f"files:  {files} ({built.write_files(files)} files)")
     built.write_page(path)
-    typer.echo(f"report: {path} ({path.stat().st_size / 1e6:.1f} MB)")
+    print_line(f"report: {path} ({path.stat().st_size / 1e6:.1f} MB)")
 
 
 def _arena(scenario: str, condition: str, n: int, seed: int) -> Arena | None:

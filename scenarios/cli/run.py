@@ -10,10 +10,11 @@ import typer
 
 from kswarms.agents.common.columns import RECORDED_TABLES
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.quoting import for_shell
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selection import select_scenarios, with_densities_and_seeds
 from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, complete_ids, parse_path
-from kswarms.scenarios.cli.printing import print_table
+from kswarms.scenarios.cli.printing import print_line, print_table
 from kswarms.scenarios.cli.progress import ProgressStyle, show_progress
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.description.text import parse_integers, split_words
@@ -97,15 +98,15 @@ def run(
         lines += [f"figure: {path}" for path in write_figures(out, out / "figures", list(titles), titles)]
     if not quiet:
         for line in lines:
-            typer.echo(line)
+            print_line(line)
         for table_id in dict.fromkeys(ids):
             if table_id in TABLES and tables:
                 _print_table(table_id, out)
-        directory = shlex.quote(str(out))
+        directory = for_shell(str(out))
         if failed:
-            typer.echo(f"next:   kswarms status {directory}  (failed runs, and how to replay them)")
+            print_line(f"next:   kswarms status {directory}  (failed runs, and how to replay them)")
         else:
-            typer.echo(f"next:   kswarms report {directory}  (all results in one HTML file)")
+            print_line(f"next:   kswarms report {directory}  (all results in one HTML file)")
     return 1 if failed else 0
 
 
@@ -143,12 +144,12 @@ def _play(
             _warn(f"{out} has the finished runs; repeat the command to resume")
         raise
     if failed:
-        _warn(f"{failed} of {len(runs)} runs failed; see `kswarms status {shlex.quote(str(out))}`")
+        _warn(f"{failed} of {len(runs)} runs failed; see `kswarms status {for_shell(str(out))}`")
     return study.tables, failed
 
 
 def _warn(message: str) -> None:
-    typer.echo(f"kswarms: {message}", err=True)
+    print_line(f"kswarms: {message}", err=True)
 
 
 def _print_table(table_id: str, out: Path) -> None:

@@ -1,13 +1,13 @@
 """``status`` and ``replay``: the state of a results directory, and the replay of one of its runs."""
 
-import shlex
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from kswarms.agents.common.quoting import for_shell
 from kswarms.scenarios.cli.options import Trust
-from kswarms.scenarios.cli.printing import format_duration, print_columns
+from kswarms.scenarios.cli.printing import format_duration, print_columns, print_line
 from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.ledger import Ledger
 from kswarms.scenarios.study.lock import lock_holder
@@ -27,19 +27,18 @@ def status(directory: Directory) -> None:
         print_columns([headings, *rows], left=(0,))
         typer.echo()
         sessions = ledger.sessions()
-        typer.echo(
-            f"sessions: {len(sessions)}, first: {sessions[0]['started'] if sessions else '–'}"
-        )
+        print_line(f"sessions: {len(sessions)}, first: {sessions[0]['started'] if sessions else '–'}")
         for code, runs in ledger.runs_by_code().items():
-            typer.echo(f"played by: kswarms {code}, {runs} runs")
+            print_line(f"played by: kswarms {code}, {runs} runs")
         if holder := lock_holder(directory):
-            typer.echo(f"in use by: {holder}")
+            print_line(f"in use by: {holder}")
         for (run, scenario, condition, n, seed), error, trace in ledger.failed_runs():
             label = f"{scenario} {condition}".strip()
-            typer.echo(f"\nfailed: {label}, n={n}, seed={seed}: {error}")
+            typer.echo()
+            print_line(f"failed: {label}, n={n}, seed={seed}: {error}")
             for line in _last_call(trace):
-                typer.echo(f"  {line}")
-            typer.echo(f"  again: kswarms replay {shlex.quote(str(directory))} {run}")
+                print_line(f"  {line}")
+            print_line(f"  again: kswarms replay {for_shell(str(directory))} {for_shell(run)}")
 
 
 def replay(
@@ -59,17 +58,17 @@ def replay(
         kept = ledger.outcome(run_digest)
     if not trust:
         require_no_user_code(run)
-    typer.echo(str(run))
+    print_line(str(run))
     outcome = play(run)
     for row in (*outcome.swarms, *outcome.policies):
-        typer.echo("  " + ", ".join(f"{name}={value!r}" for name, value in row.items()))
+        print_line("  " + ", ".join(f"{name}={value!r}" for name, value in row.items()))
     if kept is None:
-        typer.echo(f"{directory} has no results of this run")
+        print_line(f"{directory} has no results of this run")
         return 0
     if kept == (outcome.swarms, outcome.policies):
-        typer.echo(f"equal to the results in {directory}")
+        print_line(f"equal to the results in {directory}")
         return 0
-    typer.echo(f"kswarms: {directory} has different results of this run, played by other code", err=True)
+    print_line(f"kswarms: {directory} has different results of this run, played by other code", err=True)
     return 1
 
 

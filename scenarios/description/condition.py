@@ -13,8 +13,8 @@ from kswarms.model.description.fields import GameFields, SwarmFields
 from kswarms.model.description.game import Game, Swarm, apportion
 from kswarms.model.description.parameters import text_of
 
-ONE_LINE: Final = r"^[^\x00-\x1f\x7f]*$"
-"""Pattern of a text without line breaks and control characters."""
+ONE_LINE: Final = r"^[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]*$"
+"""Pattern of a text without line breaks, control characters and changes of the writing direction."""
 Value = bool | int | float | str
 """Value of a field in a grid."""
 

@@ -5,7 +5,7 @@ from html.parser import HTMLParser
 
 
 class Page(HTMLParser):
-    """Anchors, links, images and addresses of a page."""
+    """Anchors, links, images, addresses and names of attributes of a page."""
 
     def __init__(self, html: str) -> None:
         super().__init__()
@@ -13,10 +13,12 @@ class Page(HTMLParser):
         self.links: list[str] = []
         self.images: list[dict[str, str | None]] = []
         self.addresses: list[str] = []
+        self.attributes: set[str] = set()
         self.feed(html)
 
     def handle_starttag(self, tag: str, attrs: Iterable[tuple[str, str | None]]) -> None:
         given = dict(attrs)
+        self.attributes |= given.keys()
         if given.get("id"):
             self.ids.append(str(given["id"]))
         if tag == "a":

@@ -14,7 +14,7 @@ def test_a_table_is_converted_to_markdown() -> None:
     assert TABLE.to_markdown().splitlines() == [
         "| N | S1 pucks | fits | a\\|b |",
         "|--:|--:|---|---|",
-        "| 6 | 1.0 (0.5 … 1.5) | yes | <b> |",
+        "| 6 | 1.0 (0.5 … 1.5) | yes | \\<b> |",
         "| 10 | – | no | x\\|y |",
         "",
         "two lines & more",

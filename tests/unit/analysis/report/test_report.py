@@ -82,7 +82,7 @@ def test_a_page_is_self_contained_and_its_links_are_valid() -> None:
     assert "<script" not in html
     assert 'class="wide"' in html
     downloads = [unquote(link.partition(",")[2]) for link in page.links if link.startswith("data:")]
-    assert downloads == ["N,x\n6,1.25\n", "| N | x |\n|--:|--:|\n| 6 | 1.0 |\n\nbelow\n"]
+    assert downloads == ['"N","x"\n6,1.25\n', "| N | x |\n|--:|--:|\n| 6 | 1.0 |\n\nbelow\n"]
 
 
 def test_page_and_files_are_written_or_an_error_is_raised(tmp_path: Path) -> None:
