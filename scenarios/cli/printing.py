@@ -16,6 +16,11 @@ def print_line(text: str, err: bool = False) -> None:
     typer.echo(for_terminal(text), err=err)
 
 
+def warn(message: str) -> None:
+    """Print a message on standard error."""
+    print_line(f"kswarms: {message}", err=True)
+
+
 def print_table(title: str, header: Sequence[str], rows: Iterable[Sequence[str]], caption: str = "") -> None:
     """Print a table with lines around its cells, its title above and its caption below."""
     from rich.console import Console

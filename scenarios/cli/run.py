@@ -1,8 +1,6 @@
 """``run``: play scenarios, write tables of their results and draw figures."""
 
 import shlex
-from collections.abc import Sequence
-from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import Annotated
 
@@ -14,9 +12,8 @@ from kswarms.agents.common.quoting import for_shell
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selection import select_scenarios, with_densities_and_seeds
 from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, complete_ids, parse_path
-from kswarms.scenarios.cli.printing import print_line, print_table
-from kswarms.scenarios.cli.progress import ProgressStyle, show_progress
-from kswarms.scenarios.description.scenario import Scenario
+from kswarms.scenarios.cli.printing import print_line, print_table, warn
+from kswarms.scenarios.cli.progress import ProgressStyle
 from kswarms.scenarios.description.text import parse_integers, split_words
 
 
@@ -60,6 +57,10 @@ def run(
     record: Annotated[
         str, typer.Option(metavar="NAME,...", help=f"Additional tables: {', '.join(RECORDED_TABLES)}.")
     ] = "",
+    allow_mixed: Annotated[
+        bool,
+        typer.Option("--allow-mixed", help="Mix runs of different versions of Python, numpy and numba."),
+    ] = False,
     no_figures: Annotated[bool, typer.Option("--no-figures", help="Do not draw figures.")] = False,
     progress: Annotated[ProgressStyle, typer.Option(help="How progress is shown.")] = "bar",
     quiet: Annotated[bool, typer.Option("--quiet", help="Print errors only.")] = False,
@@ -84,12 +85,13 @@ def run(
         if name not in RECORDED_TABLES:
             raise InputError("record", name, f"must be among {', '.join(RECORDED_TABLES)}")
     if left_out:
-        _warn(f"left out, since no density suits them: {', '.join(left_out)}")
+        warn(f"left out, since no density suits them: {', '.join(left_out)}")
 
+    from kswarms.scenarios.cli.playing import Plan, play_study
+
+    plan = Plan(scenarios, first_seed, tuple(records), jobs, scheduler, allow_mixed)
     command = shlex.join(context.obj)
-    tables, failed = _play(
-        scenarios, first_seed, jobs, scheduler, records, out, "none" if quiet else progress, command
-    )
+    tables, failed = play_study(out, plan, command, "none" if quiet else progress)
     lines = [f"table:  {table}" for table in tables]
     if tables and not no_figures:
         from kswarms.analysis.figures.over_n import write_figures
@@ -108,48 +110,6 @@ def run(
         else:
             print_line(f"next:   kswarms report {directory}  (all results in one HTML file)")
     return 1 if failed else 0
-
-
-def _play(
-    scenarios: Sequence[Scenario],
-    first_seed: int,
-    workers: int,
-    scheduler: str | None,
-    records: Sequence[str],
-    out: Path,
-    progress: ProgressStyle,
-    command: str,
-) -> tuple[list[Path], int]:
-    """Play the missing runs of a study; return the tables written and the number of failed runs."""
-    from kswarms.scenarios.study.study import Study
-
-    failed, playing = 0, False
-    try:
-        with ExitStack() as stack:
-            executor = None
-            if scheduler is not None:
-                from kswarms.scenarios.runs.dask import dask_executor
-
-                executor, workers = stack.enter_context(dask_executor(scheduler))
-            study = stack.enter_context(Study(out, command))
-            runs = study.plan(scenarios, first_seed, records)
-            for code in study.other_code:
-                _warn(f"{out} has runs of other code, {code}; use another --out to play them again")
-            playing = True
-            with closing(study.play(runs, workers, records, executor)) as played:
-                for count in show_progress(played, runs, progress):
-                    failed = count.failed
-    except KeyboardInterrupt:
-        if playing:  # after the tables are written, because the terminal may be gone
-            _warn(f"{out} has the finished runs; repeat the command to resume")
-        raise
-    if failed:
-        _warn(f"{failed} of {len(runs)} runs failed; see `kswarms status {for_shell(str(out))}`")
-    return study.tables, failed
-
-
-def _warn(message: str) -> None:
-    print_line(f"kswarms: {message}", err=True)
 
 
 def _print_table(table_id: str, out: Path) -> None:

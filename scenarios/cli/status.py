@@ -7,7 +7,7 @@ import typer
 
 from kswarms.agents.common.quoting import for_shell
 from kswarms.scenarios.cli.options import Trust
-from kswarms.scenarios.cli.printing import format_duration, print_columns, print_line
+from kswarms.scenarios.cli.printing import format_duration, print_columns, print_line, warn
 from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.ledger import Ledger
 from kswarms.scenarios.study.lock import lock_holder
@@ -30,6 +30,11 @@ def status(directory: Directory) -> None:
         print_line(f"sessions: {len(sessions)}, first: {sessions[0]['started'] if sessions else '–'}")
         for code, runs in ledger.runs_by_code().items():
             print_line(f"played by: kswarms {code}, {runs} runs")
+        environments = ledger.runs_by_environment()
+        for environment, runs in environments.items():
+            print_line(f"played with: {environment}, {runs} runs")
+        if len(environments) > 1:
+            print_line("mixed:    the runs of different versions may differ in their last digits")
         if holder := lock_holder(directory):
             print_line(f"in use by: {holder}")
         for (run, scenario, condition, n, seed), error, trace in ledger.failed_runs():
@@ -55,7 +60,7 @@ def replay(
 
     with Ledger(directory / LEDGER_FILE) as ledger:
         run = ledger.run(run_digest)
-        kept = ledger.outcome(run_digest)
+        kept, origin = ledger.outcome(run_digest), ledger.origin(run_digest)
     if not trust:
         require_no_user_code(run)
     print_line(str(run))
@@ -68,7 +73,7 @@ def replay(
     if kept == (outcome.swarms, outcome.policies):
         print_line(f"equal to the results in {directory}")
         return 0
-    print_line(f"kswarms: {directory} has different results of this run, played by other code", err=True)
+    warn(f"{directory} has different results of this run, played by kswarms {origin}")
     return 1
 
 

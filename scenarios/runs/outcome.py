@@ -1,10 +1,25 @@
 """The result of a run: its outcome or its failure."""
 
+import platform
 import traceback
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cache
+from importlib import metadata
 from typing import Any, Self
 
 from kswarms.scenarios.runs.run import Run
+
+
+@cache
+def environment() -> str:
+    """Return the versions and the machine on which the bytes of results may depend.
+
+    Releases of Python that differ in their last number compute equal numbers. Those of numpy and numba may
+    compute others, and so may another kind of processor.
+    """
+    python = ".".join(platform.python_version_tuple()[:2])
+    libraries = [f"{name} {metadata.version(name)}" for name in ("numpy", "numba")]
+    return ", ".join((f"Python {python}", *libraries, platform.machine()))
 
 
 @dataclass(frozen=True)
@@ -17,6 +32,8 @@ class Outcome:
     """Rows of ``policies.parquet``, without the same columns; empty if no swarm learns."""
     records: dict[str, dict[str, list[Any]]]
     """The columns of each recorded table, by name of the table and of the column."""
+    environment: str = field(default_factory=environment)
+    """The `environment` of the process that played the run."""
 
 
 @dataclass(frozen=True)

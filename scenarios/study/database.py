@@ -10,7 +10,9 @@ from kswarms.agents.common.errors import InputError
 
 LEDGER_FILE: Final = "ledger.sqlite"
 """Name of the file in the directory of a study."""
-_FORMAT: Final = 1  # increment it with every incompatible change of the tables
+_FORMAT: Final = 2  # increment it with every incompatible change of the tables
+_READABLE: Final = {1: "CREATE TEMP VIEW runs AS SELECT *, NULL AS environment FROM main.runs"}
+"""Earlier formats that can be read, each with a statement that adds what it lacks."""
 _APPLICATION: Final = 0x6B73776D  # "kswm" identifies ledgers among SQLite files
 _TABLES: Final = f"""
 BEGIN;
@@ -19,7 +21,7 @@ PRAGMA user_version = {_FORMAT};
 CREATE TABLE games (id INTEGER PRIMARY KEY, description TEXT NOT NULL UNIQUE);
 CREATE TABLE runs (
     run TEXT PRIMARY KEY, game INTEGER NOT NULL REFERENCES games, seed INTEGER NOT NULL,
-    version TEXT NOT NULL, status TEXT NOT NULL DEFAULT 'missing', code TEXT, seconds REAL,
+    version TEXT NOT NULL, status TEXT NOT NULL DEFAULT 'missing', code TEXT, environment TEXT, seconds REAL,
     swarms TEXT, policies TEXT, error TEXT, traceback TEXT
 );
 CREATE TABLE scenarios (id TEXT PRIMARY KEY, toml TEXT NOT NULL);
@@ -58,8 +60,15 @@ def _prepare(db: sqlite3.Connection, create: bool) -> None:
     ((application,),) = db.execute("PRAGMA application_id")
     ((form,),) = db.execute("PRAGMA user_version")
     empty = not db.execute("SELECT 1 FROM sqlite_master").fetchone()
-    if not (empty and create) and (application, form) != (_APPLICATION, _FORMAT):
-        raise sqlite3.DatabaseError(f"format {form}, not {_FORMAT}" if application else "of another program")
+    if not (empty and create) and application != _APPLICATION:
+        raise sqlite3.DatabaseError("of another program")
+    if application and form != _FORMAT:
+        if form not in _READABLE:
+            raise sqlite3.DatabaseError(f"format {form}, not {_FORMAT}")
+        if create:
+            reason = f"format {form} of an earlier version can be read, not resumed; use another directory"
+            raise sqlite3.DatabaseError(reason)
+        db.execute(_READABLE[form])
     if create:
         db.execute("PRAGMA journal_mode = WAL")
         db.execute("PRAGMA synchronous = NORMAL")

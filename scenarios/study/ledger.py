@@ -12,12 +12,10 @@ from typing import Any, NamedTuple, Self
 from kswarms import __version__
 from kswarms.agents.common.errors import InputError
 from kswarms.model.description.game import Game
-from kswarms.scenarios.runs.outcome import Failure, Outcome
+from kswarms.scenarios.runs.outcome import Failure, Outcome, environment
 from kswarms.scenarios.runs.run import Run, code_version, digest
 from kswarms.scenarios.study.database import open_database, os_errors
-
-Curve = tuple[str, str]
-"""Scenario and condition."""
+from kswarms.scenarios.study.mixtures import Contents, Curve, refuse_mixtures
 
 
 class Point(NamedTuple):
@@ -58,14 +56,21 @@ class Ledger:
         except ValueError as error:
             raise OSError(f"{self.path}: is damaged ({error})") from error
 
-    def plan(self, scenarios: dict[str, str], curves: dict[Curve, str], runs: Sequence[Run]) -> None:
+    def plan(
+        self,
+        scenarios: dict[str, str],
+        curves: dict[Curve, str],
+        runs: Sequence[Run],
+        allow_mixed: bool = False,
+    ) -> None:
         """Add runs, the TOML of their scenarios by id, and the descriptions of their curves.
 
-        If the ledger has runs of another version, or a different curve of the same name, an `InputError` is
-        raised and nothing is added.
+        If the ledger has runs of another version, of another environment (unless `allow_mixed`), or a
+        different curve of the same name, an `InputError` is raised and nothing is added.
         """
+        added = Contents({__version__}, {environment()}, curves)
         with os_errors(self.path), self._db:
-            self._refuse_mixtures(curves)
+            refuse_mixtures(str(self.path.parent), self.contents(), added, "this is", allow_mixed)
             self._db.executemany("INSERT OR REPLACE INTO scenarios VALUES (?, ?)", scenarios.items())
             self._db.executemany(
                 "INSERT OR REPLACE INTO curves VALUES (?, ?, ?)",
@@ -85,17 +90,11 @@ class Ledger:
                 ((*label, run.n, run.seed, run.digest) for run in runs for label in run.labels),
             )
 
-    def _refuse_mixtures(self, curves: dict[Curve, str]) -> None:
-        directory = str(self.path.parent)
-        for (version,) in self._db.execute("SELECT DISTINCT version FROM runs"):
-            if version != __version__:
-                reason = f"has runs of kswarms {version}, this is {__version__}; use another directory"
-                raise InputError("out", directory, reason)
-        for scenario, condition, text in self._db.execute("SELECT * FROM curves"):
-            if curves.get((scenario, condition), text) != text:
-                curve = f"{scenario} {condition}".strip()
-                reason = f"has runs of a different {curve}; use another directory, or another id"
-                raise InputError("out", directory, reason)
+    def contents(self) -> Contents:
+        """Return the versions, environments and curves of the runs."""
+        versions = {version for (version,) in self._query("SELECT DISTINCT version FROM runs")}
+        curves = {(name, condition): text for name, condition, text in self._query("SELECT * FROM curves")}
+        return Contents(versions, set(self.runs_by_environment()), curves)
 
     def unfinished(self, runs: Iterable[Run], records: Sequence[str]) -> list[Run]:
         """Return the runs that are not done, or lack one of the recorded tables."""
@@ -123,9 +122,9 @@ class Ledger:
             else:
                 rows = (json.dumps(result.swarms), json.dumps(result.policies))
                 self._db.execute(
-                    "UPDATE runs SET status = 'done', code = ?, seconds = ?, swarms = ?, policies = ?,"
-                    " error = NULL, traceback = NULL WHERE run = ?",
-                    (code_version(), seconds, *rows, run.digest),
+                    "UPDATE runs SET status = 'done', code = ?, environment = ?, seconds = ?, swarms = ?,"
+                    " policies = ?, error = NULL, traceback = NULL WHERE run = ?",
+                    (code_version(), result.environment, seconds, *rows, run.digest),
                 )
             self._db.executemany(
                 "INSERT OR REPLACE INTO records VALUES (?, ?, ?)",
@@ -178,6 +177,11 @@ class Ledger:
         row = next(self._query(query, run_digest), None)
         return (self._parse_json(row[0]), self._parse_json(row[1])) if row else None
 
+    def origin(self, run_digest: str) -> str:
+        """Return code and environment that played a run, as far as they are known."""
+        query = "SELECT code, environment FROM runs WHERE run = ?"
+        return ", ".join(text for row in self._query(query, run_digest) for text in row if text)
+
     def write_session(self, number: int | None, about: dict[str, Any]) -> int | None:
         """Write the description of a session, a new one if `number` is None; return its number."""
         with os_errors(self.path), self._db:
@@ -210,6 +214,15 @@ class Ledger:
     def runs_by_code(self) -> dict[str, int]:
         """Return the number of runs, by the version of the code that played them."""
         return dict(self._query("SELECT code, COUNT(*) FROM runs WHERE code NOT NULL GROUP BY code"))
+
+    def runs_by_environment(self) -> dict[str, int]:
+        """Return the number of finished runs, by the environment that played them."""
+        return dict(
+            self._query(
+                "SELECT environment, COUNT(*) FROM runs WHERE status = 'done' AND environment NOT NULL"
+                " GROUP BY environment"
+            )
+        )
 
     def failed_runs(self) -> Iterator[tuple[Point, str, str]]:
         """Yield the runs whose last attempt failed: a point of each, its error and traceback."""

@@ -9,7 +9,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from kswarms.agents.common.columns import ARM, RECORDED_TABLES, SCHEMA_VERSION, TABLES, Column, column_names
-from kswarms.scenarios.study.ledger import Curve, Ledger, Point
+from kswarms.scenarios.study.ledger import Ledger, Point
+from kswarms.scenarios.study.mixtures import Curve
 
 STUDY_TABLES: Final = ("runs", "policies", *RECORDED_TABLES)
 """Names of the tables of a study."""

@@ -21,7 +21,8 @@ from kswarms import __version__
 from kswarms.agents.common.atomic_files import TEMPORARY, remove_temporary_files
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.description.scenario import Scenario
-from kswarms.scenarios.runs.outcome import Outcome, Result
+from kswarms.scenarios.runs.errors import RunError
+from kswarms.scenarios.runs.outcome import Outcome, Result, environment
 from kswarms.scenarios.runs.run import Run, code_version, describe_curve, expand
 from kswarms.scenarios.runs.sweep import sweep
 from kswarms.scenarios.signals import deferred_signals
@@ -50,6 +51,8 @@ class Study:
         Created unless it exists.
     command : str
         The command line, for the manifest and the lock.
+    allow_mixed : bool
+        Whether runs of several environments (versions of Python, numpy and numba, machine) may be mixed.
 
     Raises
     ------
@@ -59,10 +62,11 @@ class Study:
         If writing fails; finished runs are kept.
     """
 
-    def __init__(self, directory: Path, command: str = "") -> None:
+    def __init__(self, directory: Path, command: str = "", allow_mixed: bool = False) -> None:
         self.directory = directory
         self.tables: list[Path] = []
         self._command = command
+        self._allow_mixed = allow_mixed
         self._session: int | None = None
 
     def __enter__(self) -> Self:
@@ -107,7 +111,8 @@ class Study:
         Raises
         ------
         InputError
-            If the directory has runs of another version, or of a different curve of the same name.
+            If the directory has runs of another version, of another environment (unless `allow_mixed`), or
+            of a different curve of the same name.
         """
         runs = expand(scenarios, first_seed)
         self._ledger.plan(
@@ -118,6 +123,7 @@ class Study:
                 for condition in scenario.conditions
             },
             runs,
+            self._allow_mixed,
         )
         waiting = self._ledger.unfinished(runs, records)
         self._update_session(
@@ -129,9 +135,10 @@ class Study:
         return waiting
 
     @property
-    def other_code(self) -> list[str]:
-        """Code versions, except the present one, that played runs of the study."""
-        return [code for code in self._ledger.runs_by_code() if code != code_version()]
+    def other_origins(self) -> list[str]:
+        """Code versions and environments, except the present ones, that played runs of the study."""
+        found = (*self._ledger.runs_by_code(), *self._ledger.runs_by_environment())
+        return [origin for origin in found if origin not in (code_version(), environment())]
 
     def play(
         self,
@@ -154,13 +161,20 @@ class Study:
         Raises
         ------
         RunError
-            If the executor breaks.
+            If the executor breaks, or a worker has another environment and `allow_mixed` is False.
         """
         with closing(sweep(runs, jobs, ",".join(records), executor)) as results:
             for run, result, seconds in results:
+                if isinstance(result, Outcome):
+                    self._require_environment(result)
                 tables = pack(result.records) if isinstance(result, Outcome) else {}
                 self._ledger.add(run, result, seconds, tables)
                 yield run, result, seconds
+
+    def _require_environment(self, outcome: Outcome) -> None:
+        if not self._allow_mixed and outcome.environment != environment():
+            workers = f"a worker has {outcome.environment}, this process has {environment()}"
+            raise RunError(f"{workers}; use equal versions, or --allow-mixed")
 
     def _update_session(self, **changes: Any) -> None:
         """Change the description of this session in the ledger, and write the manifest."""
@@ -170,6 +184,7 @@ class Study:
             "kswarms": __version__,
             "code": code_version(),
             "entropy": _ENTROPY,
+            "environments": self._ledger.runs_by_environment(),
             "scenarios": self._ledger.scenarios(),
             "sessions": self._ledger.sessions(),
         }

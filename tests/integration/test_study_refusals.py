@@ -77,12 +77,12 @@ def test_another_kind_of_ledger_is_refused_and_unchanged() -> None:
     db.close()
     shutil.copytree("other", "later")
     with sqlite3.connect(Path("later", LEDGER_FILE)) as db:
-        db.executescript("PRAGMA application_id = 1802729325; PRAGMA user_version = 2")
+        db.executescript("PRAGMA application_id = 1802729325; PRAGMA user_version = 3")
     db.close()
     for name, reason in (
         ("text", "file is not"),
         ("other", "of another program"),
-        ("later", "format 2, not 1"),
+        ("later", "format 3, not 2"),
     ):
         before = Path(name, LEDGER_FILE).read_bytes()
         with pytest.raises(InputError, match=rf"='{name}/{LEDGER_FILE}': must be a ledger of.*\({reason}"):

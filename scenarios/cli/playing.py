@@ -1,0 +1,61 @@
+"""Play the runs of a study, with its warnings and its progress."""
+
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from kswarms.agents.common.quoting import for_shell
+from kswarms.scenarios.cli.printing import warn
+from kswarms.scenarios.cli.progress import ProgressStyle, show_progress
+from kswarms.scenarios.description.scenario import Scenario
+from kswarms.scenarios.runs.dask import dask_executor
+from kswarms.scenarios.study.study import Study
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The runs of a command, and how they are played."""
+
+    scenarios: Sequence[Scenario]
+    first_seed: int
+    records: Sequence[str]
+    """Names of the recorded tables."""
+    jobs: int
+    """Number of worker processes."""
+    scheduler: str | None
+    """Address of a Dask scheduler that plays the runs in place of worker processes."""
+    allow_mixed: bool
+    """Whether runs of several environments may be mixed."""
+
+
+def play_study(out: Path, plan: Plan, command: str, progress: ProgressStyle) -> tuple[list[Path], int]:
+    """Play the missing runs of a study; return the tables written and the number of failed runs."""
+    failed, playing = 0, False
+    try:
+        with _executor(plan) as (executor, workers), Study(out, command, plan.allow_mixed) as study:
+            runs = study.plan(plan.scenarios, plan.first_seed, plan.records)
+            for origin in study.other_origins:
+                warn(f"{out} has runs of other code, {origin}; use another --out to play them again")
+            playing = True
+            with closing(study.play(runs, workers, plan.records, executor)) as played:
+                for count in show_progress(played, runs, progress):
+                    failed = count.failed
+    except KeyboardInterrupt:
+        if playing:  # after the tables are written, because the terminal may be gone
+            warn(f"{out} has the finished runs; repeat the command to resume")
+        raise
+    if failed:
+        warn(f"{failed} of {len(runs)} runs failed; see `kswarms status {for_shell(str(out))}`")
+    return study.tables, failed
+
+
+@contextmanager
+def _executor(plan: Plan) -> Iterator[tuple[Executor | None, int]]:
+    """Yield the executor, None for worker processes of this machine, and the number of workers."""
+    if plan.scheduler is None:
+        yield None, plan.jobs
+    else:
+        with dask_executor(plan.scheduler) as connected:
+            yield connected
