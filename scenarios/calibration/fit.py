@@ -22,9 +22,9 @@ from kswarms.agents.common.atomic_files import remove_temporary_files
 from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.calibration.games import START, Candidate, Cell, texts_of, to_candidate, to_position
-from kswarms.scenarios.calibration.shares import Play, Shares
+from kswarms.scenarios.calibration.shares import Play, Shares, read_shares
 from kswarms.scenarios.description.scenario import DENSITIES
-from kswarms.scenarios.study.directory import make_directory, write_json
+from kswarms.scenarios.study.directory import SHARES_FILE, make_directory, write_json
 
 SPREAD: Final = 0.15
 """Standard deviation of the first generation, relative to the search range."""
@@ -32,7 +32,6 @@ VALIDATION_SEED: Final = 1000
 """First seed of the validation. Seeds of the catalogue (from 0) stay unused, to judge the result."""
 FIT_SEED: Final = 10_000
 """First seed of the first generation."""
-_SHARES: Final = "shares.json"
 TRACE: Final = "calibration.json"
 """File of the trace of a fit."""
 
@@ -154,11 +153,12 @@ def _open_shares(setup: Setup, play: Play, out: Path, fresh: bool) -> Shares:
     """Create the directory and return the shares in it."""
     comparable = setup.model_dump(mode="json", include={"densities", "seeds", "population"})
     comparable["start"] = setup.start
-    make_directory(out)
-    if fresh:
-        for name in (_SHARES, TRACE):
+    make_directory(out, SHARES_FILE, [TRACE])
+    if fresh and (out / SHARES_FILE).exists():
+        read_shares(out / SHARES_FILE)  # refuses a file of others
+        for name in (SHARES_FILE, TRACE):
             (out / name).unlink(missing_ok=True)
-    shares = Shares(out / _SHARES, comparable, play)
+    shares = Shares(out / SHARES_FILE, comparable, play)
     remove_temporary_files(out)
     shares.save()
     return shares

@@ -11,6 +11,8 @@ import numpy as np
 
 from kswarms.agents.common.arrays import Floats
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.input_files import read_input_file
+from kswarms.agents.common.limits import MAX_JSON_FILE
 from kswarms.scenarios.calibration.games import Candidate, Cell, learning_game
 from kswarms.scenarios.runs.run import Run, digest
 from kswarms.scenarios.study.directory import write_json
@@ -67,11 +69,21 @@ def _runs(cell: Cell, candidate: Candidate, seeds: range) -> list[Run]:
 
 
 def _read(path: Path, setup: dict[str, Any]) -> dict[str, float]:
-    try:
-        content = json.loads(path.read_text())
-        found, shares = dict(content["setup"]), dict(content["shares"])
-    except (ValueError, TypeError, KeyError) as error:
-        raise InputError("out", str(path.parent), f"has a {path.name} that is no file of a fit") from error
+    found, shares = read_shares(path)
     if found != setup:
         raise InputError("out", str(path.parent), "has another setup; use another directory, or --fresh")
     return shares
+
+
+def read_shares(path: Path) -> tuple[dict[str, Any], dict[str, float]]:
+    """Return setup and shares of a file; `InputError` if it is no file of a fit."""
+    source = read_input_file("out", path, MAX_JSON_FILE)
+    try:
+        content = json.loads(source)
+        setup, shares = dict(content["setup"]), dict(content["shares"])
+        valid = all(0.0 <= share <= 1.0 for share in shares.values())
+    except (ValueError, TypeError, KeyError, RecursionError):
+        valid = False
+    if not valid:
+        raise InputError("out", str(path.parent), f"has a {path.name} that is no file of a fit")
+    return setup, shares

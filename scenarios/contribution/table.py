@@ -11,10 +11,10 @@ import pyarrow.parquet as pq
 from kswarms.agents.common.atomic_files import atomic_path, remove_temporary_files
 from kswarms.agents.common.columns import TABLES
 from kswarms.agents.common.errors import InputError
-from kswarms.scenarios.study.directory import make_directory
+from kswarms.scenarios.study.directory import CONTRIBUTIONS_FILE, make_directory
 from kswarms.scenarios.study.parquet import arrow_schema
 
-FILE: Final = "contribution.parquet"
+FILE: Final = CONTRIBUTIONS_FILE
 SCHEMA: Final = arrow_schema(TABLES["contribution"])
 """Columns of the table; each row compares a game with and without a robot."""
 _KEY: Final = ("scenario", "condition", "absent_from", "n")
@@ -23,9 +23,9 @@ _KEY: Final = ("scenario", "condition", "absent_from", "n")
 def prepare_table(directory: Path) -> None:
     """Create a directory for the table if necessary, and remove temporary files of killed processes.
 
-    Raise `InputError` if the directory is not writable, or has a file of the same name with other columns.
+    Raise `InputError` as `make_directory` does, or if a file of the same name has other columns.
     """
-    make_directory(directory)
+    make_directory(directory, FILE)
     path = directory / FILE
     try:
         valid = not path.exists() or pq.read_schema(path).equals(SCHEMA)

@@ -15,28 +15,33 @@ _READABLE: Final = {1: "CREATE TEMP VIEW runs AS SELECT *, NULL AS environment F
 """Earlier formats that can be read, each with a statement that adds what it lacks."""
 _APPLICATION: Final = 0x6B73776D  # "kswm" identifies ledgers among SQLite files
 _TABLES: Final = f"""
-BEGIN;
 PRAGMA application_id = {_APPLICATION};
 PRAGMA user_version = {_FORMAT};
-CREATE TABLE games (id INTEGER PRIMARY KEY, description TEXT NOT NULL UNIQUE);
-CREATE TABLE runs (
+CREATE TABLE IF NOT EXISTS games (id INTEGER PRIMARY KEY, description TEXT NOT NULL UNIQUE);
+CREATE TABLE IF NOT EXISTS runs (
     run TEXT PRIMARY KEY, game INTEGER NOT NULL REFERENCES games, seed INTEGER NOT NULL,
     version TEXT NOT NULL, status TEXT NOT NULL DEFAULT 'missing', code TEXT, environment TEXT, seconds REAL,
     swarms TEXT, policies TEXT, error TEXT, traceback TEXT
 );
-CREATE TABLE scenarios (id TEXT PRIMARY KEY, toml TEXT NOT NULL);
-CREATE TABLE curves (
+CREATE TABLE IF NOT EXISTS scenarios (id TEXT PRIMARY KEY, toml TEXT NOT NULL);
+CREATE TABLE IF NOT EXISTS curves (
     scenario TEXT, condition TEXT, description TEXT NOT NULL, PRIMARY KEY (scenario, condition)
 ) WITHOUT ROWID;
-CREATE TABLE points (
+CREATE TABLE IF NOT EXISTS points (
     scenario TEXT, condition TEXT, n INTEGER, seed INTEGER, run TEXT NOT NULL REFERENCES runs,
     PRIMARY KEY (scenario, condition, n, seed)
 ) WITHOUT ROWID;
-CREATE INDEX points_of_run ON points (run);
-CREATE TABLE records (run TEXT REFERENCES runs, name TEXT, rows BLOB NOT NULL, PRIMARY KEY (run, name));
-CREATE TABLE sessions (id INTEGER PRIMARY KEY, about TEXT NOT NULL);
-COMMIT;
+CREATE INDEX IF NOT EXISTS points_of_run ON points (run);
+CREATE TABLE IF NOT EXISTS records (
+    run TEXT REFERENCES runs, name TEXT, rows BLOB NOT NULL, PRIMARY KEY (run, name)
+);
+CREATE TABLE IF NOT EXISTS sessions (id INTEGER PRIMARY KEY, about TEXT NOT NULL);
 """
+
+
+def create_database(path: Path) -> None:
+    """Create the file of a ledger if it is missing or empty, and check its format."""
+    open_database(path, create=True).close()
 
 
 def open_database(path: Path, create: bool) -> sqlite3.Connection:
@@ -73,7 +78,7 @@ def _prepare(db: sqlite3.Connection, create: bool) -> None:
         db.execute("PRAGMA journal_mode = WAL")
         db.execute("PRAGMA synchronous = NORMAL")
     if empty:
-        db.executescript(_TABLES)
+        db.executescript(f"BEGIN IMMEDIATE; {_TABLES} COMMIT")
 
 
 @contextmanager

@@ -1,21 +1,58 @@
 """Results directories and JSON files in them."""
 
 import json
+import stat
+from collections.abc import Collection
 from pathlib import Path
 from tempfile import TemporaryFile
+from typing import Final
 
-from kswarms.agents.common.atomic_files import atomic_path
+from kswarms.agents.common.atomic_files import atomic_path, check_directory
 from kswarms.agents.common.errors import InputError
+from kswarms.scenarios.study.database import LEDGER_FILE
+
+CONTRIBUTIONS_FILE: Final = "contribution.parquet"
+"""Table of contributions."""
+SHARES_FILE: Final = "shares.json"
+"""Shares that a fit measured."""
+FIGURES: Final = "figures"
+"""Folder of figures in a results directory."""
+_MARKS: Final = (LEDGER_FILE, CONTRIBUTIONS_FILE, SHARES_FILE)
+"""A directory is a results directory of kswarms if it has one of these files."""
 
 
-def make_directory(directory: Path) -> None:
-    """Create a results directory unless it exists; raise an `InputError` if it is not writable."""
+def make_directory(directory: Path, mark: str, files: Collection[str] = ()) -> None:
+    """Create a results directory, or check an existing one; nothing in it changes.
+
+    Parameters
+    ----------
+    mark : str
+        The main file that the caller writes: of a study, of contributions or of a fit.
+    files : collection of str
+        Names of the other files that the caller writes.
+
+    Raises
+    ------
+    InputError
+        If the directory is not writable; has files, but no main file of kswarms; has one of `files`, but
+        no `mark`; or if a file is a symbolic link or not regular.
+    """
+    check_directory(directory, "out", _MARKS)
     try:
         directory.mkdir(parents=True, exist_ok=True)
-        with TemporaryFile(dir=directory):
-            pass
+        modes = {path.name: path.lstat().st_mode for path in directory.iterdir()}
+        if stat.S_ISDIR(modes.get(FIGURES, 0)):
+            with TemporaryFile(dir=directory / FIGURES):
+                pass
     except OSError as error:
         raise InputError("out", str(directory), f"must be a writable directory ({error.strerror})") from error
+    for name in (mark, *files):
+        if name in modes and mark not in modes:
+            raise InputError("out", str(directory), f"has a {name} but no {mark}; use another directory")
+        if not stat.S_ISREG(modes.get(name, stat.S_IFREG)):
+            raise InputError("out", str(directory / name), "must be a regular file and no symbolic link")
+    if not stat.S_ISDIR(modes.get(FIGURES, stat.S_IFDIR)):
+        raise InputError("out", str(directory / FIGURES), "must be a directory and no symbolic link")
 
 
 def write_json(path: Path, content: object) -> None:

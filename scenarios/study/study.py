@@ -19,23 +19,28 @@ from typing import Any, Final, Self
 
 from kswarms import __version__
 from kswarms.agents.common.atomic_files import TEMPORARY, remove_temporary_files
-from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.runs.errors import RunError
 from kswarms.scenarios.runs.outcome import Outcome, Result, environment
 from kswarms.scenarios.runs.run import Run, code_version, describe_curve, expand
 from kswarms.scenarios.runs.sweep import sweep
 from kswarms.scenarios.signals import deferred_signals
-from kswarms.scenarios.study.database import LEDGER_FILE
+from kswarms.scenarios.study.database import LEDGER_FILE, create_database
 from kswarms.scenarios.study.directory import make_directory, write_json
 from kswarms.scenarios.study.ledger import Ledger
-from kswarms.scenarios.study.lock import directory_lock
+from kswarms.scenarios.study.lock import LOCK_FILE, directory_lock
 from kswarms.scenarios.study.parquet import STUDY_TABLES, export, pack
 
 MANIFEST: Final = "manifest.json"
 """Name of the file that describes the origin of the results."""
 _TEMPORARY_TABLES: Final = f"{TEMPORARY}tables-"
 """Prefix of the temporary directory of the tables."""
+_FILES: Final = (
+    LOCK_FILE,
+    MANIFEST,
+    *(f"{name}.parquet" for name in STUDY_TABLES),
+    *(f"{LEDGER_FILE}-{kind}" for kind in ("journal", "wal", "shm")),
+)
 _ENTROPY: Final = "numpy PCG64(SeedSequence(seed, spawn_key=(robot, purpose))), and nothing else"
 
 
@@ -57,7 +62,7 @@ class Study:
     Raises
     ------
     InputError
-        If the directory is not writable, in use, or has tables without a ledger.
+        If the directory is not writable, in use, or has files but no ledger of kswarms.
     OSError
         If writing fails; finished runs are kept.
     """
@@ -70,14 +75,16 @@ class Study:
         self._session: int | None = None
 
     def __enter__(self) -> Self:
-        make_directory(self.directory)
-        _refuse_foreign_tables(self.directory)
+        ledger = self.directory / LEDGER_FILE
+        make_directory(self.directory, LEDGER_FILE, _FILES)
+        # First the ledger: it tells directories of kswarms from others, also if this process is killed now.
+        create_database(ledger)
         with ExitStack() as stack:
             stack.enter_context(directory_lock(self.directory, self._command))
             for path in self.directory.glob(f"{_TEMPORARY_TABLES}*"):
                 shutil.rmtree(path, ignore_errors=True)
             remove_temporary_files(self.directory)
-            self._ledger = stack.enter_context(Ledger(self.directory / LEDGER_FILE, create=True))
+            self._ledger = stack.enter_context(Ledger(ledger, create=True))
             self._resources = stack.pop_all()
         self._about = _describe_session(self._command)
         return self
@@ -197,15 +204,6 @@ def _status(error: BaseException | None) -> str:
         return "done"
     number = str(error) if isinstance(error, KeyboardInterrupt) else ""  # its text names the signal, if any
     return f"stopped: {number or type(error).__name__}"
-
-
-def _refuse_foreign_tables(directory: Path) -> None:
-    if (directory / LEDGER_FILE).exists():
-        return
-    for name in STUDY_TABLES:
-        if (directory / f"{name}.parquet").exists():
-            reason = f"has a {name}.parquet but no {LEDGER_FILE}; use another directory"
-            raise InputError("out", str(directory), reason)
 
 
 def _describe_session(command: str) -> dict[str, Any]:

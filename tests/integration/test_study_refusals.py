@@ -62,7 +62,7 @@ def test_a_study_waits_for_a_query_of_the_lock(monkeypatch: pytest.MonkeyPatch) 
 def test_tables_without_a_ledger_are_not_replaced(foreign: str) -> None:
     RESULTS.mkdir()
     (RESULTS / foreign).write_text("my jogging diary")
-    with pytest.raises(InputError, match=f"has a {foreign} but no ledger.sqlite; use another directory"):
+    with pytest.raises(InputError, match=f"or one that kswarms wrote; it has '{foreign}'"):
         Study(RESULTS).__enter__()
     assert (RESULTS / foreign).read_text() == "my jogging diary"
     assert [path.name for path in RESULTS.iterdir()] == [foreign]
