@@ -188,7 +188,7 @@ def main(
         f"bound: ≤ {MAX_GROWTH:g} at N = {sizes[-1]}, without building",
     )
     imports = "from kswarms import ForagingModel"
-    game = f"{imports}\nForagingModel(n=50, record='', duration={duration}).play()"
+    game = f"{imports}\nForagingModel(n=50, record='', seed=0, duration={duration}).play()"
     print_table(
         "Peak memory of a new process that plays N = 50, compiled code cached",
         ["", "MB"],

@@ -76,7 +76,6 @@ def count_work(plan: Plan, seed: int) -> Work:
     model.play()
     work = _work(model, kinds[Timeout], kinds.total())
     played = sum(row["t_a_intra"] + row["t_a_inter"] + row["t_p"] for row in model.results())
-    model.forget()
     measured = plan.n * plan.duration
     if abs(played - measured) > 1e-6 * measured:
         raise WorkError(f"{plan}, seed {seed}: {played} robot-seconds played, not {measured}")
@@ -101,7 +100,6 @@ def time_game(plan: Plan, seed: int, work: Work) -> tuple[float, float]:
     played = time.process_time()
     # Counting processed events would cost time; SimPy always counts the scheduled ones.
     done = _work(model, work.timeouts, work.events)
-    model.forget()
     if done != work:
         raise WorkError(f"{plan}, seed {seed}: counted {work}, but timed {done}")
     return built - start, played - built

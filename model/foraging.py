@@ -10,6 +10,7 @@ from kswarms.agents.policies.spec import PolicyLike
 from kswarms.agents.user_code.syntax import split_outside
 from kswarms.model.description.game import Game, Swarm, apportion
 from kswarms.model.game_model import GameModel
+from kswarms.model.mesa_base import Rng
 
 
 class ForagingModel(GameModel):
@@ -27,7 +28,7 @@ class ForagingModel(GameModel):
     drives : str
         Drive of each swarm in state P as a fraction of the top speed, separated by commas; ``0.7/0.65`` also
         sets the drive in state A. Defaults if empty.
-    seed, record
+    seed, record, rng
         As in `kswarms.model.game_model.GameModel`.
     **fields
         Further fields of `kswarms.model.description.game.Game`, such as ``duration`` or ``layout``.
@@ -44,14 +45,15 @@ class ForagingModel(GameModel):
         policies: str | Sequence[PolicyLike] = "avoid,attack",
         shares: str = "",
         drives: str = "",
-        seed: int = 0,
+        seed: float | str | None = None,
         record: str = "model",
+        rng: Rng | None = None,
         **fields: Any,
     ) -> None:
         for name, text in (("shares", shares), ("drives", drives), ("record", record)):
             if not isinstance(text, str):
                 raise InputError(name, text, "must be a text")
-        super().__init__(Game(swarms=_swarms(n, policies, shares, drives), **fields), seed, record)
+        super().__init__(Game(swarms=_swarms(n, policies, shares, drives), **fields), seed, record, rng)
 
 
 def _swarms(n: int, policies: str | Sequence[PolicyLike], shares: str, drives: str) -> tuple[Swarm, ...]:
@@ -67,7 +69,7 @@ def _swarms(n: int, policies: str | Sequence[PolicyLike], shares: str, drives: s
     pairs = [drive.partition("/") for drive in drives.split(",")] if drives else [("", "", "")] * len(names)
     if len(pairs) != len(names):
         raise InputError("drives", drives, f"must be {len(names)} numbers separated by ','")
-    if not isinstance(n, int | np.integer) or n < len(names):
+    if not isinstance(n, int | np.integer) or isinstance(n, bool) or n < len(names):
         raise InputError("n", n, f"must be a whole number ≥ {len(names)}, one robot for each swarm")
     swarms = []
     for name, size, (drive, _, drive_action) in zip(names, apportion(int(n), parts), pairs, strict=True):

@@ -7,6 +7,7 @@ see the world after the previous period.
 """
 
 import math
+from collections.abc import Collection
 from typing import Any
 
 from simpy.core import StopSimulation
@@ -18,6 +19,7 @@ from kswarms.model.description.game import Game
 from kswarms.model.game_state import GameState
 from kswarms.model.kernel.arrays import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE
 from kswarms.model.kernel.kernel import Kernel
+from kswarms.model.mesa_base import Rng
 from kswarms.model.recorder import Recorder, Table, parse_record, policy_rows, result_rows
 
 
@@ -28,17 +30,19 @@ class GameModel(GameState):
     ----------
     game : Game
         The game.
-    seed : int
-        Seed of the run, ≥ 0.
+    seed : int, str or None
+        Seed of the run, a whole number ≥ 0; drawn if None, see the attribute `seed`.
     record : str
         Comma-separated list of `kswarms.model.recorder.RECORDS`; nothing is recorded if empty.
+    rng : int, sequence, SeedSequence, Generator or None
+        Alternative to `seed`, as in Mesa.
 
     Attributes
     ----------
     recorder : Recorder
         Samples and tables.
     datacollector : mesa.DataCollector
-        The collector of the recorder, where Mesa looks for it.
+        Collects one row at the start and one in each step; a subclass may add reporters or replace it.
 
     Raises
     ------
@@ -46,12 +50,15 @@ class GameModel(GameState):
         If a parameter is not allowed, or there is no room for the robots.
     """
 
-    def __init__(self, game: Game, seed: int = 0, record: str = "") -> None:
+    def __init__(
+        self, game: Game, seed: float | str | None = None, record: str = "", rng: Rng | None = None
+    ) -> None:
         recorded = parse_record(record)
-        super().__init__(game, seed, log_conflicts="conflicts" in recorded)
+        super().__init__(game, seed, rng, log_conflicts="conflicts" in recorded)
         self._kernel = Kernel(game, self.arena, self.states)
         self._due = 0
         """Number of kernel events that wait for decisions of the robots."""
+        self._begin_phase(self.phase)
         if self.phase == "learning":
             Instant(self.env, BEFORE_TIMEOUTS, self._switch_phase).schedule_in(self.game_begin)
         end = self.game_begin + self.controller.periods(game.duration)
@@ -59,7 +66,6 @@ class GameModel(GameState):
         self._motion = Instant(self.env, AFTER_TIMEOUTS, self._move)
         self._motion.schedule_in(0)
         self._sample_every = self.controller.periods(game.sample_period)
-        self._sampled_end = False
         self.recorder = Recorder(self, recorded)
         self.datacollector = self.recorder.collector
         self._sample()
@@ -75,25 +81,37 @@ class GameModel(GameState):
         return self.recorder.sample_times
 
     def step(self) -> None:
-        """Play one sampling period and sample; after the end of the game, stop the model."""
+        """Play one sampling period; after the end of the game, stop the model."""
         if self.ended:
-            self._stop()
+            self.running = False
             return
         until = self.now - self.now % self._sample_every + self._sample_every
         self.env.run(until=until)
         self._check_clock(until)
-        self._sample()
 
     def play(self) -> None:
-        """Play to the end of the game; sample on the way only if samples are recorded."""
-        if self.recorder.samples:
-            while self.running:
-                self.step()
-            return
-        if not self.ended:
+        """Play to the end of the game, or until the model is stopped.
+
+        The game is played in steps only if samples are recorded, or a subclass has its own `step`.
+        """
+        in_steps = self.recorder.samples(self.datacollector) or type(self).step is not GameModel.step
+        if self.running and not self.ended and not in_steps:
             self.env.run()
             self._check_clock()
-        self._stop()
+        while self.running:
+            self.step()
+
+    def _wrapped_step(self, *arguments: Any, **named: Any) -> None:
+        """Sample after each step, which a subclass may define; Mesa calls this as `step`."""
+        samples = self.recorder.sample_times
+        self.steps = len(samples) - 1
+        if self.steps == self.now == 0:
+            self._sample()  # again: a subclass may have added reporters
+        super()._wrapped_step(*arguments, **named)
+        if not self._sampled_end:
+            self._sample()
+        if not self.running:
+            self.steps = len(samples)  # `mesa.batch_run` reads the row before this number
 
     def results(self) -> list[dict[str, Any]]:
         """Return one row per swarm: the columns of the table ``runs`` from ``swarm`` on."""
@@ -107,33 +125,36 @@ class GameModel(GameState):
         """Return the recorded tables (conflicts, robots, trajectory) by name; columns have equal lengths."""
         return self.recorder.tables()
 
+    def _sample(self) -> None:
+        self._sampled_end = bool(self.ended)
+        self.recorder.sample(self.datacollector)
+
     def _check_clock(self, until: int | None = None) -> None:
         """Raise a RuntimeError unless the clock ran to period `until` or to the end of the game."""
         if not self.ended and self.now != until:  # a user-defined policy raised SimPy's StopSimulation
             raise RuntimeError(f"the clock was stopped at {self.time} s, before the end of the game")
 
-    def _stop(self) -> None:
-        """Stop the model; sample the end of the game if the user ran the clock to it."""
-        if not self._sampled_end:
-            self._sample()
-        self.running = False
-        self.forget()
+    def _begin_phase(self, phase: str) -> None:
+        """Remove the robots that are absent from a phase, and reset the scores."""
+        self.phase = phase
+        absent = [robot for robot in self.robots if robot.number in self.game.absent]
+        if absent and phase in ("game", self.game.absent_from):
+            self._take_out(absent)
+        self._reset_scores()
 
-    def _sample(self) -> None:
-        self._sampled_end = bool(self.ended)
-        self.recorder.sample()
+    def _take_out(self, robots: Collection[Krembot]) -> None:
+        super()._take_out(robots)
+        # The arrays of a kernel have a row per robot. The robots that have not decided yet perceive again.
+        before = self._kernel
+        self._kernel = Kernel(self.game, self.arena, self.states)
+        self._kernel.resume(before)
+        self._due = 0
 
     def _switch_phase(self, _: Event) -> None:
         for robot in self.robots:
             robot.restart(self.now)
         self.recorder.flush_conflicts()
-        n = len(self.robots)
-        self._begin_measured_game()
-        if len(self.robots) < n:
-            # The arrays of a kernel have a row per robot. A new kernel starts between two periods, as here.
-            supply = self.supply
-            self._kernel = Kernel(self.game, self.arena, self.states)
-            self._kernel.supply[:] = supply
+        self._begin_phase("game")
 
     def _time_out(self, _: Event) -> None:
         if not self.ended:
@@ -148,26 +169,30 @@ class GameModel(GameState):
         """Let robots decide, move the bodies up to the next decision or event, and schedule itself there."""
         if self.ended:
             return
-        env, kernel = self.env, self._kernel
+        env = self.env
         now: int = env.now  # type: ignore[assignment]  # whole periods; `cast` would cost a call
         while True:
             if self._due > 0:
                 self._decide(now, self._due)
-            tick, self._due = kernel.advance(now, env.peek())  # type: ignore[arg-type]
+            tick, self._due = self._kernel.advance(now, env.peek())  # type: ignore[arg-type]
             if tick > now or self._due == 0:
                 break
         self._motion.schedule_in(tick - now)
 
     def _decide(self, now: int, size: int) -> None:
-        """Pass the first `size` events of the kernel to their robots; the events are ordered by row."""
-        robots, swarm_of = self.robots, self._swarm_of
+        """Pass the first `size` events of the kernel to their robots; the events are ordered by row.
+
+        If a policy removes a robot, the kernel finds the remaining events again.
+        """
+        robots = self.robots
         pick_ups = []
         rows, kinds, others, actives, vacants, angles = self._kernel.fields
         for k in range(size):
             robot, kind = robots[rows[k]], kinds[k]
             if kind == CONFLICT:
-                other = others[k]
-                robot.meet(now, other, swarm_of[other], angles[k], actives[k], vacants[k])
+                robot.meet(now, robots[others[k]], angles[k], actives[k], vacants[k])
+                if self.robots is not robots:
+                    return
             elif kind == LEG_DUE:
                 robot.begin_leg()
             elif kind == TURN_DUE:

@@ -1,21 +1,23 @@
 """State of a game: clock, robots and scores. `GameModel` adds the events."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import cast
 
 import mesa
 import numpy as np
 import simpy
+from mesa.experimental.continuous_space import ContinuousSpace
 
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.robot.conflict import Conflict
 from kswarms.agents.robot.krembot import Krembot
 from kswarms.model.description.game import Game
-from kswarms.model.population import controller_constants, make_robots, place_robots, remove_robots
+from kswarms.model.mesa_base import MesaModel, Rng
+from kswarms.model.population import controller_constants, make_robots, place_robots
 
 
-class GameState(mesa.Model):
+class GameState(MesaModel):
     """State of a game. A random stream is determined by the seed of the run, the robot and the purpose.
 
     Attributes
@@ -25,13 +27,15 @@ class GameState(mesa.Model):
     arena : Arena
         Walls, stations and bases.
     space : mesa.experimental.continuous_space.ContinuousSpace
-        Positions of the robots; the kernel works on the same array.
+        The space of the robots; the kernel works on its array of positions, which is read-only in public.
     states : RobotStates
         State arrays of the robots.
     robots : list of Krembot
         Robots in the game, by number.
     members : list of list of Krembot
-        Robots of each swarm.
+        Robots of each swarm in the game.
+    removed : list of Krembot
+        Robots removed since the current phase began, in the order of their removal.
     game_begin : int
         Control period in which the measured game begins; 0 without a learning phase.
     phase : {'learning', 'game'}
@@ -42,18 +46,19 @@ class GameState(mesa.Model):
         Pucks picked up by all robots in the measured game.
     carried_at_start : int
         Pucks carried when the measured game began.
+    lost : int
+        Pucks that removed robots carried away from the measured game.
     ended : {'', 'time', 'pucks', 'cap'}
         Reason for the end of the game; empty before it.
     conflict_log : list of Conflict, optional
         Closed conflicts that the recorder has not stored yet; None if conflicts are not recorded.
     """
 
-    def __init__(self, game: Game, seed: int, log_conflicts: bool) -> None:
-        if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
-            raise InputError("seed", seed, "must be a whole number ≥ 0")
-        super().__init__(seed=int(seed))
+    def __init__(self, game: Game, seed: float | str | None, rng: Rng | None, log_conflicts: bool) -> None:
+        if not isinstance(game, Game):
+            raise InputError("game", game, "must be a Game")
+        super().__init__(seed, rng)
         self.game = game
-        self.seed = int(seed)
         self.env = simpy.Environment()
         self.arena = game.arena(self.seed)
         self.controller = controller_constants(game)
@@ -64,10 +69,12 @@ class GameState(mesa.Model):
         self.phase = "learning" if self.game_begin > 0 else "game"
         self.ended = ""
         self._end_period: int | None = None
-        self.space, self.states = place_robots(game, self.arena, self.seed, self.random)
+        self._robot_space, self.states = place_robots(game, self.arena, self.seed, self.random)
+        self.space: ContinuousSpace = self._robot_space
+        self._is_complete = False
         self._set_robots(make_robots(self, game, self.seed))
-        if game.absent_from == "learning" or self.game_begin == 0:
-            self._remove_absent()
+        self._is_complete = True
+        self._swarm_of = [robot.swarm for robot in self.robots]
         self._reset_scores()
 
     @property
@@ -90,22 +97,60 @@ class GameState(mesa.Model):
         """Return T(a) of a swarm, by the swarm of the opponent, and T(p), up to now (robot-periods)."""
         t_a = [0] * len(self.members)
         t_p = 0
-        for robot in self.members[swarm]:
+        for robot in self.players(swarm):
             own_t_a, own_t_p = robot.times()
             t_a = [a + b for a, b in zip(t_a, own_t_a, strict=True)]
             t_p += own_t_p
         return t_a, t_p
 
-    def forget(self) -> None:
-        """Remove this model from Mesa's class-level registry, so that it can be freed."""
-        mesa.Agent._ids.pop(self, None)
+    def players(self, swarm: int) -> list[Krembot]:
+        """Return the robots of a swarm in this phase, including those removed in it, by number."""
+        gone = [robot for robot in self.removed if robot.swarm == swarm]
+        return sorted(self.members[swarm] + gone, key=lambda robot: robot.number)
 
-    def _begin_measured_game(self) -> None:
-        """Remove robots that only learn, and reset the scores."""
-        if self.game.absent_from == "game":
-            self._remove_absent()
-        self.phase = "game"
-        self._reset_scores()
+    def swarm_of(self, number: int) -> int:
+        """Return the swarm of a robot, by its number; both from 0."""
+        return self._swarm_of[number]
+
+    def remove(self, robot: mesa.Agent) -> None:
+        """Remove a robot from the game; `docs/howto.md` describes what happens.
+
+        Raises
+        ------
+        InputError
+            If it is not a robot in this game.
+        """
+        if not isinstance(robot, Krembot) or robot.model is not self or not robot.in_game:
+            raise InputError("robot", robot, "must be a robot in this game")
+        self._take_out([robot])
+
+    def register_agent(self, agent: mesa.Agent) -> None:
+        """Register an agent that is not a robot; Mesa calls this when the agent is created."""
+        if isinstance(agent, Krembot) and (self._is_complete or agent.model is not self):
+            raise InputError("agent", agent, "must not be a robot: the game has all robots from the start")
+        super().register_agent(agent)
+
+    def deregister_agent(self, agent: mesa.Agent) -> None:
+        """Deregister an agent; a robot is removed from the game."""
+        if isinstance(agent, Krembot):
+            self.remove(agent)
+        else:
+            super().deregister_agent(agent)  # type: ignore[no-untyped-call]
+
+    def _take_out(self, robots: Collection[Krembot]) -> None:
+        """Remove robots: they stop, their bodies and pucks vanish, the rows of the others are renumbered."""
+        for robot in robots:
+            self.lost += robot.carrying
+            robot.leave(self.now)
+            super().deregister_agent(robot)  # type: ignore[no-untyped-call]
+            self._robot_space._remove_agent(robot)
+        self.removed += robots
+        rest = [robot for robot in self.robots if robot.in_game]
+        rows = np.array([robot.index for robot in rest], dtype=np.int64)
+        self.states.keep(rows, self._robot_space.positions)
+        for row, robot in enumerate(rest):
+            robot.index = row
+        self._set_robots(rest)
 
     def _end(self, reason: str) -> None:
         self.ended = reason
@@ -115,15 +160,11 @@ class GameState(mesa.Model):
 
     def _reset_scores(self) -> None:
         self.pucks = [0] * len(self.members)
-        self.picked_up = 0
+        self.picked_up = self.lost = 0
+        self.removed: list[Krembot] = []
         self.carried_at_start = sum(robot.carrying for robot in self.robots)
-
-    def _remove_absent(self) -> None:
-        if self.game.absent:
-            self._set_robots(remove_robots(self, self.robots, self.game.absent))
 
     def _set_robots(self, robots: list[Krembot]) -> None:
         self.robots = robots
         swarms = range(len(self.game.swarms))
         self.members = [[robot for robot in robots if robot.swarm == k] for k in swarms]
-        self._swarm_of = [robot.swarm for robot in robots]

@@ -1,10 +1,8 @@
-"""The robots of a game: bodies, policies, and removal of absent robots."""
+"""The robots of a game: bodies and policies."""
 
-from collections.abc import Sequence
 from random import Random
 
 import numpy as np
-from mesa.experimental.continuous_space import ContinuousSpace
 
 from kswarms.agents.conformance.trial import try_policy
 from kswarms.agents.policies.interface import Setting
@@ -16,6 +14,7 @@ from kswarms.agents.robot.state import RobotStates
 from kswarms.agents.streams import Streams
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game
+from kswarms.model.mesa_base import RobotSpace
 from kswarms.model.placement import start_poses
 
 
@@ -36,7 +35,7 @@ def controller_constants(game: Game) -> Controller:
     )
 
 
-def place_robots(game: Game, arena: Arena, seed: int, random: Random) -> tuple[ContinuousSpace, RobotStates]:
+def place_robots(game: Game, arena: Arena, seed: int, random: Random) -> tuple[RobotSpace, RobotStates]:
     """Place the bodies of all robots, at rest; return Mesa's space and the state arrays.
 
     Both use the same array of positions. The space has no agents yet. `random` is for Mesa and stays unused.
@@ -45,9 +44,9 @@ def place_robots(game: Game, arena: Arena, seed: int, random: Random) -> tuple[C
     positions, headings = start_poses(
         game.size, seed, half, body.radius, parameters.clearance, parameters.wall_clearance
     )
-    space = ContinuousSpace([[-half, half], [-half, half]], torus=False, random=random, n_agents=game.size)
+    space = RobotSpace(half, game.size, random)
     swarm_of = np.repeat(np.arange(len(game.swarms)), [swarm.size for swarm in game.swarms])
-    states = RobotStates(space._agent_positions, swarm_of, headings)
+    states = RobotStates(space.positions, swarm_of, headings)
     states.positions[:] = positions
     return space, states
 
@@ -80,15 +79,3 @@ def make_robots(model: Host, game: Game, seed: int) -> list[Krembot]:
             )
             robots.append(robot)
     return robots
-
-
-def remove_robots(model: Host, robots: Sequence[Krembot], absent: Sequence[int]) -> list[Krembot]:
-    """Remove robots by number from a complete game; renumber the rows of the others and return them."""
-    for number in absent:
-        robots[number].finish(int(model.env.now))
-        robots[number].remove()
-    rest = [robot for robot in robots if robot.number not in absent]
-    model.states.keep(np.array([robot.index for robot in rest]), model.space.agent_positions)
-    for row, robot in enumerate(rest):
-        robot.index = row
-    return rest

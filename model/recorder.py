@@ -1,7 +1,9 @@
 """Recording of a game: samples in Mesa's DataCollector, recorded tables, rows of results (section 3.5)."""
 
+import itertools
 from collections.abc import Callable
 from functools import partial
+from os import PathLike
 from pathlib import Path
 from typing import Any, Final
 
@@ -11,6 +13,7 @@ from kswarms.agents.actions import TOWARDS
 from kswarms.agents.common.columns import RECORDED_TABLES, column_names
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.saved import best_actions, save_learned, snapshot_of
+from kswarms.agents.robot.krembot import Krembot
 from kswarms.agents.theory.swarms import swarm_utility_difference
 from kswarms.agents.theory.times import share_of_time
 from kswarms.model.game_state import GameState
@@ -24,7 +27,7 @@ _CONFLICTS, _ROBOTS, _TRAJECTORY = (column_names(table)[1:] for table in RECORDE
 _NOT_REPORTED: Final = ("swarm", "duration", "ended")
 """Columns of results without a model reporter for each swarm."""
 _POLICIES: Final = ("swarm", "opponent", "action", "share", "attack_share")
-_AGENT_REPORTERS: Final[dict[str, Callable[[Any], Any]]] = {
+_OF_ROBOT: Final[dict[str, Callable[[Krembot], Any]]] = {
     "swarm": lambda robot: robot.swarm + 1,
     "state": lambda robot: robot.state,
     "puck": lambda robot: robot.carrying,
@@ -32,6 +35,11 @@ _AGENT_REPORTERS: Final[dict[str, Callable[[Any], Any]]] = {
     "y": lambda robot: float(robot.position[1]),
     "heading": lambda robot: robot.heading,
 }
+
+
+def _report(value_of: Callable[[Krembot], Any], agent: Any) -> Any:
+    """Return a value of a robot; None for an agent that is no robot."""
+    return value_of(agent) if isinstance(agent, Krembot) else None
 
 
 def parse_record(text: str) -> frozenset[str]:
@@ -48,18 +56,17 @@ def parse_record(text: str) -> frozenset[str]:
 class Recorder:
     """Records a game; `record` is a subset of `RECORDS`.
 
-    Model reporters: ``time`` (s since the start), ``game_time`` (s of the measured game) and ``ended``; for
-    each swarm k the columns of the table ``runs``, such as ``pucks_k`` and ``t_p_k``, and its fractions of
-    T(a) and T(p), ``share_a_k`` and ``share_p_k``. No reporter has the name of an argument of
-    `ForagingModel`, because `mesa.batch_run` puts both into one row.
-    Agent reporters: swarm, state, puck, x, y and heading. Table: conflicts.
+    Model reporters: ``time`` (s since the start), ``game_time`` (s of the measured game), ``ended`` (reason
+    for the end of the game, ``running`` before it, ``stopped`` if the model was stopped) and ``run_seed``
+    (seed of the run); for each swarm k the columns of the table ``runs``, such as ``pucks_k`` and ``t_p_k``,
+    and its fractions of T(a) and T(p), ``share_a_k`` and ``share_p_k``. No reporter has the name of an
+    argument of `ForagingModel`, because `mesa.batch_run` puts both into one row.
+    Agent reporters: swarm, state, puck, x, y and heading; None for agents that are no robots.
 
     Attributes
     ----------
     collector : mesa.DataCollector
         Samples, and the table of conflicts.
-    samples : bool
-        Whether sampling records anything.
     sample_times : list of float
         Times of the samples (s).
     """
@@ -68,25 +75,45 @@ class Recorder:
         self._state = state
         self._record = record
         self._row: dict[str, Any] = {}
-        self.samples = bool(record & {"model", "agents", "trajectory"})
+        self._read_names: set[str] = set()
+        self._trajectory: list[list[tuple[Any, ...]]] = []
         self.sample_times: list[float] = []
         row = _sample_row(state) if "model" in record else {}
         self.collector = DataCollector(
             {name: partial(self._read, name) for name in row},
-            _AGENT_REPORTERS if record & {"agents", "trajectory"} else {},
+            {name: partial(_report, of) for name, of in _OF_ROBOT.items()} if "agents" in record else {},
             tables={"conflicts": list(_CONFLICTS)} if "conflicts" in record else {},
         )
+        self._conflicts: Table = self.collector.tables.get("conflicts", {})
+
+    def samples(self, collector: DataCollector) -> bool:
+        """Return whether samples with a collector record anything."""
+        reporters = collector.model_reporters, collector.agent_reporters, collector.agenttype_reporters
+        return any(reporters) or "trajectory" in self._record
 
     def _read(self, name: str, _: object) -> Any:
-        if name == "time":  # the first reporter; the others read the same row
+        # All reporters of a collection read the same row.
+        if name in self._read_names or self._state.time != self._row.get("time"):
             self._row = _sample_row(self._state)
+            self._read_names.clear()
+        self._read_names.add(name)
         return self._row[name]
 
-    def sample(self) -> None:
-        """Sample the game as it is now."""
+    def sample(self, collector: DataCollector) -> None:
+        """Sample the game as it is now: row ``model.steps`` of the samples and of a collector."""
+        state, step = self._state, self._state.steps
         self.flush_conflicts()
-        self.sample_times.append(self._state.time)
-        self.collector.collect(self._state)
+        del self.sample_times[step:], self._trajectory[step:]
+        self.sample_times.append(state.time)
+        if "trajectory" in self._record:
+            rows = [
+                (state.time, robot.number, *(value_of(robot) for value_of in _OF_ROBOT.values()))
+                for robot in state.robots
+            ]
+            self._trajectory.append(rows)
+        _make_room(collector, step)
+        self._read_names.update(self._row)
+        collector.collect(state)
 
     def flush_conflicts(self) -> None:
         """Move the closed conflicts to the table: times in seconds, swarms counted from 1.
@@ -96,55 +123,62 @@ class Recorder:
         log, state = self._state.conflict_log, self._state
         if not log:
             return
-        seconds, robots = state.controller.seconds, state.robots
+        seconds, swarm_of = state.controller.seconds, state.swarm_of
         for c in log:
-            robot, opponent = robots[c.robot], robots[c.opponent]
             seen: list[list[int]] = [[] for _ in state.members]
-            for j in sorted(c.seen):
-                if j >= 0:
-                    seen[robots[j].swarm].append(robots[j].number)
-            identity = (state.phase, robot.number, robot.swarm + 1, opponent.number, opponent.swarm + 1)
+            for number in sorted(c.seen):
+                seen[swarm_of(number)].append(number)
+            identity = (state.phase, c.robot, swarm_of(c.robot) + 1, c.opponent, swarm_of(c.opponent) + 1)
             begin = (seconds(c.start), c.x, c.y, c.action.name)
             end = (seconds(c.t_a), seconds(c.t_p), c.active, tuple(map(tuple, seen)), c.reward, c.value)
-            row = dict(zip(_CONFLICTS, identity + begin + end, strict=True))
-            self.collector.add_table_row("conflicts", row)
+            for name, value in zip(_CONFLICTS, identity + begin + end, strict=True):
+                self._conflicts[name].append(value)
         log.clear()
 
     def tables(self) -> dict[str, Table]:
         """Return the recorded tables by name."""
         tables: dict[str, Table] = {}
         if "conflicts" in self._record:
-            tables["conflicts"] = self.collector.tables["conflicts"]
+            tables["conflicts"] = self._conflicts
         if "robots" in self._record:
             tables["robots"] = self._robots()
         if "trajectory" in self._record:
-            tables["trajectory"] = self._trajectory()
+            rows = list(itertools.chain.from_iterable(self._trajectory))
+            values = dict(zip(("time", "robot", *_OF_ROBOT), _columns(rows, 2 + len(_OF_ROBOT)), strict=True))
+            tables["trajectory"] = {name: values[name] for name in _TRAJECTORY}
         return tables
 
     def _robots(self) -> Table:
-        seconds = self._state.controller.seconds
-        rows = []
-        for robot in self._state.robots:
+        seconds, state = self._state.controller.seconds, self._state
+        rows: list[tuple[Any, ...]] = []
+        for robot in itertools.chain.from_iterable(map(state.players, range(len(state.members)))):
             t_a, t_p = robot.times()
             times = seconds(sum(t_a)), seconds(t_p)
             identity = robot.number, robot.swarm + 1, robot.policy_name
             rows.append((*identity, robot.pucks, *times, snapshot_of(robot.policy)))
-        return dict(zip(_ROBOTS, map(list, zip(*rows, strict=True)), strict=True))
+        return dict(zip(_ROBOTS, _columns(rows, len(_ROBOTS)), strict=True))
 
-    def _trajectory(self) -> Table:
-        table: Table = {name: [] for name in _TRAJECTORY}
-        for step, rows in self.collector._agent_records.items():
-            for row in rows:
-                seen = dict(zip(_AGENT_REPORTERS, row[2:], strict=True))
-                seen |= {"time": self.sample_times[step], "robot": row[1] - 1}
-                for name, values in table.items():
-                    values.append(seen[name])
-        return table
+
+def _columns(rows: list[tuple[Any, ...]], width: int) -> list[list[Any]]:
+    """Return the columns of rows."""
+    return [[row[k] for row in rows] for k in range(width)]
+
+
+def _make_room(collector: DataCollector, step: int) -> None:
+    """Prepare a collector for row `step`, whatever a user collected, added or removed before."""
+    values = collector.model_vars
+    for name in values.keys() - collector.model_reporters.keys():
+        del values[name]
+    for name in collector.model_reporters:
+        column = values.setdefault(name, [])
+        del column[step:]
+        column += [None] * (step - len(column))
 
 
 def _sample_row(state: GameState) -> dict[str, Any]:
     """Return the values of all model reporters."""
-    sample = {"time": state.time, "game_time": state.duration, "ended": state.ended}
+    ended = state.ended or ("running" if state.running else "stopped")
+    sample = {"time": state.time, "game_time": state.duration, "ended": ended, "run_seed": state.seed}
     for k in range(len(state.members)):
         t_a, t_p = state.times(k)
         share = float(share_of_time(sum(t_a), sum(t_a), t_p))
@@ -159,7 +193,7 @@ def result_rows(state: GameState) -> list[dict[str, Any]]:
 
 
 def _result_row(state: GameState, k: int, t_a: list[int], t_p: int) -> dict[str, Any]:
-    seconds, members = state.controller.seconds, state.members[k]
+    seconds, members = state.controller.seconds, state.players(k)
     conflicts = [sum(robot.conflicts[m] for robot in members) for m in range(len(t_a))]
     return {
         "swarm": k + 1,
@@ -181,8 +215,8 @@ def policy_rows(state: GameState) -> list[dict[str, Any]]:
     """Return one row per learning swarm, swarm learned about and action: the table ``policies``."""
     actions = state.game.action_set
     rows: list[dict[str, Any]] = []
-    for k, members in enumerate(state.members):
-        of_robots = [best_actions(snapshot_of(robot.policy), actions) for robot in members]
+    for k in range(len(state.members)):
+        of_robots = [best_actions(snapshot_of(robot.policy), actions) for robot in state.players(k)]
         for opponent in sorted({m for best in of_robots for m in best}):
             learned = [best[opponent] for best in of_robots if opponent in best]
             shares = {a.name: sum(b.name == a.name for b in learned) / len(learned) for a in actions}
@@ -193,7 +227,7 @@ def policy_rows(state: GameState) -> list[dict[str, Any]]:
     return rows
 
 
-def save_policies(state: GameState, swarm: int, path: Path) -> None:
+def save_policies(state: GameState, swarm: int, path: str | PathLike[str]) -> None:
     """Save what the robots of a swarm (from 1) learned, for the policy ``learned(file="…")``.
 
     Raises
@@ -203,9 +237,13 @@ def save_policies(state: GameState, swarm: int, path: Path) -> None:
     OSError
         If the file cannot be written; an existing file is unchanged.
     """
-    if not 1 <= swarm <= len(state.members):
-        raise InputError("swarm", swarm, f"must be in 1 to {len(state.members)}")
-    learned = [snapshot_of(robot.policy) for robot in state.members[swarm - 1]]
-    if not all(learned):
+    if not isinstance(state, GameState):
+        raise InputError("state", state, "must be a model")
+    if not isinstance(swarm, int) or isinstance(swarm, bool) or not 1 <= swarm <= len(state.members):
+        raise InputError("swarm", swarm, f"must be a whole number from 1 to {len(state.members)}")
+    if not isinstance(path, str | PathLike):
+        raise InputError("path", path, "must be the path of a file")
+    learned = [snapshot_of(robot.policy) for robot in state.players(swarm - 1)]
+    if not learned or not all(learned):
         raise InputError("swarm", swarm, "must be a swarm of learners")
-    save_learned(path, swarm, learned)
+    save_learned(Path(path), swarm, learned)

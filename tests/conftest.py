@@ -1,11 +1,9 @@
-"""Shared by all tests: a hypothesis profile, games with given poses, release of models."""
+"""Shared by all tests: a hypothesis profile, games with given poses."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
-import mesa
-import numpy as np
 import pytest
 from hypothesis import settings
 
@@ -22,13 +20,6 @@ pytest.register_assert_rewrite("tests.helpers", "tests.reference", "tests.baseli
 
 Pose = tuple[float, float, float]
 Scene = Callable[..., GameModel]
-
-
-@pytest.fixture(autouse=True)
-def _forget_models() -> Iterator[None]:
-    """Clear Mesa's class-level registry of models."""
-    yield
-    mesa.Agent._ids.clear()
 
 
 @pytest.fixture
@@ -60,7 +51,7 @@ def scene() -> Scene:
         )
         model = GameModel(game, seed=seed, record=record)
         for robot, (x, y, heading) in zip(model.robots, [p for poses in swarms for p in poses], strict=True):
-            robot.position = np.array([x, y])
+            model.states.positions[robot.index] = x, y
             row = model.states.robots[robot.index : robot.index + 1]
             row["heading"], row["forward_x"], row["forward_y"] = heading, math.cos(heading), math.sin(heading)
         return model

@@ -8,8 +8,8 @@ from kswarms.agents.actions import Action
 class Conflict(NamedTuple):
     """One conflict of a robot, from the start of its action to the start of the next; times in periods.
 
-    Robots are rows of the state arrays. `seen` has the robot that each sensor reads at the start, see
-    `read_sensors`; n_k and n_m of section 1.3 are the numbers of these robots by swarm.
+    `robot`, `opponent` and `seen` are numbers of robots. `seen` has the robots that the sensors read at the
+    start, see `read_sensors`; n_k and n_m of section 1.3 count these robots by swarm.
     """
 
     robot: int

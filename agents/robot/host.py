@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Protocol
 
 import simpy
+from mesa import Agent
 from mesa.experimental.continuous_space import ContinuousSpace
 
 from kswarms.agents.robot.conflict import Conflict
@@ -20,3 +21,6 @@ class Host(Protocol):
     controller: Controller
     action_periods: Mapping[str, int]
     conflict_log: list[Conflict] | None
+
+    def remove(self, robot: Agent) -> None:
+        """Remove a robot from the game."""

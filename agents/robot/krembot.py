@@ -30,14 +30,14 @@ class Krembot(TimedAgent):
     """Behaviour of one robot. Time accounting is in `TimedAgent`.
 
     `number` is its number in the game and `swarm` its swarm, both from 0; `index` is its row in the state
-    arrays (absent robots are skipped). In a period it drives `stride_program` in state P and `stride_action`
+    arrays (removed robots are skipped). In a period it drives `stride_program` in state P and `stride_action`
     in state A (m). `actions`, if given, are the only allowed choices of a user-defined policy.
     """
 
     __slots__ = (
-        "_action", "_action_periods", "_allowed", "_controller", "_generator", "_opponent", "_states",
-        "_stride", "_stride_action", "_stride_program", "_timer", "_turn_rate", "_turn_step", "number",
-        "policy_name", "pucks", "swarm",
+        "_action", "_action_periods", "_allowed", "_controller", "_generator", "_opponent", "_stride",
+        "_stride_action", "_stride_program", "_timer", "_turn_rate", "_turn_step", "number", "policy_name",
+        "pucks", "swarm",
     )
 
     def __init__(
@@ -60,7 +60,6 @@ class Krembot(TimedAgent):
         self.pucks = 0  # number of deposited pucks
         self._generator = streams.generator
         self._allowed = actions
-        self._states = model.states
         self._opponent = model.states.opponent
         self._stride = model.states.stride
         self._turn_rate = model.states.turn_rate
@@ -134,24 +133,30 @@ class Krembot(TimedAgent):
 
     # The conflict.
 
-    def meet(self, now: int, other: int, swarm: int, angle: float, active: int, vacant: int) -> None:
+    def meet(self, now: int, opponent: "Krembot", angle: float, active: int, vacant: int) -> None:
         """Begin a conflict at `now` (periods) and close the previous one.
 
-        `other` is the robot ahead, `swarm` its swarm (from 0) and `angle` its bearing (rad); the policy gets
-        only the swarm. `active` is the number of active sensors, n'_i of Eq. 5.4. `vacant` has the bits of
-        the most vacant sensors.
+        `opponent` is the robot ahead and `angle` its bearing (rad); the policy gets only its swarm. `active`
+        is the number of active sensors, n'_i of Eq. 5.4. `vacant` has the bits of the most vacant sensors.
+        If the policy removes one of the two robots, no conflict begins.
         """
+        swarm = opponent.swarm
         self.close(now)
-        index = self.index
-        action = self._action = self.policy.choose(swarm)
+        if self._is_over:  # the policy removed this robot while it learned
+            return
+        action = self.policy.choose(swarm)
         if self._allowed is not None and action not in self._allowed:
             rule = f"choose({swarm}) must return an action of the game, not {action!r}"
             raise InputError("policy", self.policy_name, rule)
-        self._opponent[index] = other
+        if self._is_over or opponent._is_over:
+            return
+        self._action = action
+        index = self.index
+        other = self._opponent[index] = opponent.index
         fields: tuple[Any, ...] = ()
         if self._log is not None:
             x, y = self._states.positions[index].tolist()
-            fields = (index, other, now, x, y, action, active, self._sensed_robots(other))
+            fields = (self.number, opponent.number, now, x, y, action, active, self._sensed_robots(other))
         self._begin(swarm, active, fields)
         if action.direction != TOWARDS:
             angle = self._vacant_direction(vacant)
@@ -171,14 +176,20 @@ class Krembot(TimedAgent):
         super().finish(now)
         self._timer = None
 
+    def leave(self, now: int) -> None:
+        """Stop at `now` (periods); only a copy of the state is written afterwards."""
+        super().leave(now)
+        self._opponent, self._stride = self._states.opponent, self._states.stride
+        self._turn_rate = self._states.turn_rate
+
     def _sensed_robots(self, met: int) -> tuple[int, ...]:
-        """Return the robot that each sensor reads at the start of a conflict, −1 for none."""
+        """Return the numbers of the robots that the sensors read at the start of a conflict."""
         states, controller = self._states, self._controller
         forward = states.robots[self.index]["forward_x"], states.robots[self.index]["forward_y"]
         nearest, read = np.full(SENSORS, controller.active_range), np.full(SENSORS, -1)
         arena = controller.radius, controller.half
         read_sensors(self.index, met, *forward, states.positions, *arena, nearest, read)
-        return tuple(read.tolist())
+        return tuple(states.numbers[row] for row in read.tolist() if row >= 0)
 
     def _vacant_direction(self, vacant: int) -> float:
         """Return the angle of the most vacant sensor from the heading (rad), ties broken at random."""

@@ -7,8 +7,10 @@ angles radians in (−π, π], times control periods.
 from typing import Final, cast
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from kswarms.agents.common.arrays import Floats, Integers, Records
+from kswarms.agents.common.errors import InputError
 
 ROBOT: Final = np.dtype(
     [
@@ -36,6 +38,9 @@ ACTION: Final = 6  # resolving a conflict, including the turn
 
 HOMING_ERROR: Final = 0.05  # a robot on its way home turns if its heading is off by more (rad)
 
+_OVERLAP: Final = 1e-4  # maximum overlap of two bodies (m)
+_ROUNDING: Final = 1e-9  # maximum rounding error of a position (m)
+
 
 class RobotStates:
     """States of n robots.
@@ -48,10 +53,13 @@ class RobotStates:
         The array for the kernel.
     swarm, phase, carrying, opponent, heading, stride, turn_rate : memoryview, shape (n,)
         Views of its fields; reading or writing one number is twice as fast as with arrays.
+    numbers : list of int
+        Number of the robot in each row. Numbers never change; rows change when a robot is removed.
     """
 
     def __init__(self, positions: Floats, swarm: Integers, headings: Floats) -> None:
         self.positions = positions
+        self.numbers = list(range(len(swarm)))
         self.robots: Records = np.zeros(len(swarm), dtype=ROBOT)
         self.robots["swarm"] = swarm
         self.robots["phase"] = IDLE
@@ -72,7 +80,35 @@ class RobotStates:
         self.robots[: len(rows)] = self.robots[rows]
         self.robots = self.robots[: len(rows)]
         self.positions = positions
+        self.numbers = [self.numbers[row] for row in rows]
         self._view()
+
+    def copy_row(self, row: int) -> "RobotStates":
+        """Return a copy of the state of one robot."""
+        rows = slice(row, row + 1)
+        robots = self.robots[rows]
+        copy = RobotStates(self.positions[rows].copy(), robots["swarm"], robots["heading"])
+        copy.robots[:] = robots
+        return copy
+
+    def move(self, row: int, place: ArrayLike, half: float, radius: float) -> None:
+        """Move a robot to a place (m), shape (2,), where it overlaps no other robot and no wall.
+
+        `half` is half the side of the arena, `radius` the radius of every body (m).
+        """
+        try:
+            point = np.asarray(place, dtype=np.float64)
+        except (TypeError, ValueError):
+            point = np.empty(0)
+        limit = half - radius
+        if point.shape != (2,) or not np.abs(point).max() <= limit + _ROUNDING:  # refuses NaN, too
+            raise InputError("position", place, f"must be two numbers from {-limit} to {limit} (m)")
+        distances = np.hypot(*(self.positions - point).T)
+        distances[row] = np.inf
+        nearest = int(distances.argmin())
+        if distances[nearest] < 2 * radius - _OVERLAP:
+            raise InputError("position", place, f"must not overlap robot {self.numbers[nearest]}")
+        self.positions[row] = point
 
     def _view(self) -> None:
         self.swarm = self.robots["swarm"].data

@@ -5,7 +5,10 @@ from collections.abc import Callable
 from typing import Any, cast
 
 from mesa.experimental.continuous_space import ContinuousSpaceAgent
+from numpy.typing import ArrayLike
 
+from kswarms.agents.common.arrays import Floats
+from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.interface import LearningPolicy, Policy
 from kswarms.agents.robot.conflict import Conflict
 from kswarms.agents.robot.host import Host
@@ -15,19 +18,23 @@ from kswarms.agents.robot.state import ACTION
 class TimedAgent(ContinuousSpaceAgent):
     """An agent in continuous space that measures its times of action and program, and learns from them.
 
-    `index` is its row in the state arrays. The policy's method ``learn``, if there is one, is called at the
+    `index` is its row in the state arrays, `in_game` whether it still takes part. After its removal it keeps
+    its scores and a copy of its last state. The policy's method ``learn``, if there is one, is called at the
     end of each conflict.
     """
 
     # Slots, here and in `Krembot`, are faster than a dict of more than thirty attributes.
     __slots__ = (
         "_active", "_env", "_is_open", "_is_over", "_learn", "_log", "_open", "_open_t_a",
-        "_opponent_swarm", "_period", "_phase", "_since", "conflicts", "index", "policy", "t_a", "t_p",
+        "_opponent_swarm", "_period", "_phase", "_since", "_states", "conflicts", "in_game", "index",
+        "policy", "t_a", "t_p",
     )
 
     def __init__(self, model: Host, index: int, policy: Policy, swarms: int) -> None:
-        super().__init__(model.space, cast(Any, model))
+        self._states = model.states
         self.index = index
+        self.in_game = True
+        super().__init__(model.space, cast(Any, model))
         self.policy = policy
         self.t_a = [0] * swarms  # periods of completed actions, by the opponent's swarm
         self.t_p = 0  # periods of completed program
@@ -45,6 +52,47 @@ class TimedAgent(ContinuousSpaceAgent):
         self._opponent_swarm = -1  # swarm of the opponent of the latest conflict
         self._open: tuple[Any, ...] = ()  # first fields of the open `Conflict`, if conflicts are logged
         self._open_t_a = 0  # T(a) of the latest conflict (periods)
+
+    @property
+    def position(self) -> Floats:
+        """Centre (m), ndarray of float64, shape (2,): a read-only view that follows the robot.
+
+        Assign an array to move the robot to a free place; `InputError` if it would overlap a robot or a wall.
+        """
+        place: Floats = self._states.positions[self.index]
+        place.flags.writeable = False
+        return place
+
+    @position.setter
+    def position(self, place: ArrayLike) -> None:
+        if not self.in_game:
+            raise InputError("position", place, "cannot be set: the robot was removed from the game")
+        controller = cast(Host, self.model).controller
+        self._states.move(self.index, place, controller.half, controller.radius)
+
+    @property
+    def pos(self) -> Floats:
+        """The same as `position`: the name in Mesa's other spaces."""
+        return self.position
+
+    @pos.setter
+    def pos(self, place: ArrayLike | None) -> None:
+        if place is not None:  # Mesa sets None when it creates an agent
+            self.position = place
+
+    def remove(self) -> None:
+        """Remove the robot from the game, as `GameModel.remove` does; nothing happens if it was removed."""
+        if self.in_game:
+            cast(Host, self.model).remove(self)
+
+    def leave(self, now: int) -> None:
+        """Stop at `now` (periods): close the open conflict and keep a copy of the state."""
+        self.finish(now)
+        self.in_game = False
+        self._states = self._states.copy_row(self.index)
+        self._phase = self._states.phase
+        self.index = 0
+        self.space = None  # type: ignore[assignment]  # as in Mesa
 
     @property
     def state(self) -> str:
@@ -99,8 +147,9 @@ class TimedAgent(ContinuousSpaceAgent):
 
     def finish(self, now: int) -> None:
         """End the game: close the open conflict and stop counting."""
-        self.close(now, learn=False)
-        self._is_over = True
+        if not self._is_over:
+            self.close(now, learn=False)
+            self._is_over = True
 
     def _begin(self, swarm: int, active: int, fields: tuple[Any, ...]) -> None:
         """Open a conflict with a robot of `swarm`; `fields` are the first fields of its record."""

@@ -13,7 +13,8 @@ _KEY_COLUMNS: Final = ("run", "scenario", "condition", "n", "seed")
 _GAME_COLUMNS: Final = {*_KEY_COLUMNS, "swarm", "duration", "ended"}
 _SWARM_COLUMNS: Final = [name for name in column_names("runs") if name not in _GAME_COLUMNS]
 _MESA_COLUMNS: Final = {"RunId", "iteration", "Step", "AgentID"}
-_MODEL_REPORTERS: Final = {"time", "game_time", "ended"}
+_MODEL_REPORTERS: Final = {"time", "game_time", "ended", "run_seed"}
+_ENDS: Final = ("time", "pucks", "cap")
 _AGENT_REPORTERS: Final = {"swarm", "state", "puck", "x", "y", "heading"}
 _NOT_PARAMETERS: Final = {*_KEY_COLUMNS, *_MESA_COLUMNS, *_MODEL_REPORTERS, *_AGENT_REPORTERS}
 
@@ -55,7 +56,7 @@ def tables_of_sweep(
     for index, (run, game) in enumerate(games.items()):
         swarms = _swarms(game)
         size = sum(swarm["size"] for swarm in swarms)
-        values = (str(run), scenario, conditions[index], game.get("n", size), game.get("seed", 0))
+        values = (str(run), scenario, conditions[index], game.get("n", size), game.get("run_seed", 0))
         key = dict(zip(_KEY_COLUMNS, values, strict=True))
         runs += [key | swarm for swarm in swarms]
         policies += [key | row for row in (models[index].policy_results() if models else ())]
@@ -77,7 +78,7 @@ def _end_of_game(model: PlayedModel) -> dict[str, Any]:
     """Return the outcome of a model as a row of `mesa.batch_run`."""
     swarms = model.results()
     game = {f"{name}_{swarm['swarm']}": swarm[name] for swarm in swarms for name in _SWARM_COLUMNS}
-    game |= {"game_time": swarms[0]["duration"], "ended": swarms[0]["ended"], "seed": model.seed}
+    game |= {"game_time": swarms[0]["duration"], "ended": swarms[0]["ended"], "run_seed": model.seed}
     return game | {"policies": ",".join(swarm["policy"] for swarm in swarms), "duration": model.game.duration}
 
 
@@ -85,8 +86,9 @@ def _swarms(game: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Return the values of each swarm at the end of a game; ``duration`` is the played time."""
     if not {"game_time", "ended", "pucks_1"} <= game.keys():
         raise InputError("source", sorted(map(str, game)), 'must have model reporters (record="model")')
-    if not game["ended"]:
-        raise InputError("ended", game["ended"], "must be true: a game was stopped before its end")
+    if game["ended"] not in _ENDS:
+        rule = f"must be one of {', '.join(_ENDS)}: a game was stopped before its end"
+        raise InputError("ended", game["ended"], rule)
     of_game = {"duration": game["game_time"], "ended": game["ended"]}
     swarms: list[dict[str, Any]] = []
     # A data frame has NaN for swarms that this game lacks.

@@ -11,7 +11,7 @@ from kswarms.agents.common.arrays import Integers, Records
 from kswarms.agents.robot.state import RobotStates
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game
-from kswarms.model.kernel.advance import advance
+from kswarms.model.kernel.advance import PUCKS, advance
 from kswarms.model.kernel.arrays import CONTACT, EVENT, MAX_CONTACTS, PAIR, SCALARS, STATION, WORK, Memory
 from kswarms.model.kernel.neighbours import room_for_pairs
 
@@ -68,6 +68,11 @@ class Kernel:
         overloads = getattr(advance, "overloads", None)  # None with NUMBA_DISABLE_JIT=1
         function = next(iter(overloads.values())).entry_point if overloads else advance
         self.advance: Callable[[int, int], tuple[int, int]] = partial(function, self.memory)
+
+    def resume(self, before: "Kernel") -> None:
+        """Continue the period of a kernel with more robots; the last stage with decisions is repeated."""
+        self.supply[:] = before.supply
+        self.memory.scalars["stage"] = max(PUCKS, before.memory.scalars["stage"][0] - 1)
 
 
 def make_scalars(game: Game, arena: Arena) -> Records:

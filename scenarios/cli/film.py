@@ -108,17 +108,14 @@ def _frames(run: Run, instants: list[float], size: int) -> Iterator[Image]:
 
     with run_errors(str(run)):
         player = Player(run.game, run.seed)
-    try:
-        painter = ArenaPainter(player.model.arena, run.game.body.radius, size)
-        for instant in track(instants, "filming", len(instants)):
-            with run_errors(str(run)):
-                player.seek(instant)
-            now = player.snapshot()
-            title = f"t = {now.time:.1f} s" if now.time >= 0 else f"learning, {-now.time:.1f} s to the game"
-            yield painter.paint(
-                title, now.pucks, now.positions, now.heading, now.swarm, now.in_action, now.carrying
-            )
-            if player.ended:
-                break
-    finally:
-        player.close()
+    painter = ArenaPainter(player.model.arena, run.game.body.radius, size)
+    for instant in track(instants, "filming", len(instants)):
+        with run_errors(str(run)):
+            player.seek(instant)
+        now = player.snapshot()
+        title = f"t = {now.time:.1f} s" if now.time >= 0 else f"learning, {-now.time:.1f} s to the game"
+        yield painter.paint(
+            title, now.pucks, now.positions, now.heading, now.swarm, now.in_action, now.carrying
+        )
+        if player.ended:
+            break

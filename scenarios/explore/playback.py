@@ -32,7 +32,6 @@ class Playback:
 
     def restart(self, player: Player) -> None:
         """Replace the game by another one, which starts at its beginning."""
-        self.player.close()
         self.player = player
         self.error = ""
         self._failed = False
@@ -40,9 +39,8 @@ class Playback:
         self._owed = 0.0
 
     def close(self) -> None:
-        """Stop and release the game."""
+        """Stop the game."""
         self.playing = False
-        self.player.close()
 
     @contextmanager
     def report_errors(self, transient: bool = False) -> Iterator[None]:

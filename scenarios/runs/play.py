@@ -30,15 +30,12 @@ def play(run: Run, record: str = "") -> Outcome:
 
 @contextmanager
 def finished_game(run: Run, record: str = "") -> Iterator[GameModel]:
-    """Play a run like `play` and yield its model at the end of the game; free the model afterwards."""
+    """Play a run like `play` and yield its model at the end of the game."""
     with run_errors(str(run)):
         require_unchanged(run)
         model = GameModel(run.game, seed=run.seed, record=record)
-        try:
-            model.play()
-            yield model
-        finally:
-            model.forget()
+        model.play()
+        yield model
 
 
 @contextmanager

@@ -73,11 +73,6 @@ class Player:
         self._steps = 0
         self._history = [self._sample()]
 
-    def close(self) -> None:
-        """Release the game."""
-        with self._lock:
-            self.model.forget()
-
     @property
     def time(self) -> float:
         """Time of the measured game, negative during learning (s)."""
@@ -134,9 +129,7 @@ class Player:
         with self._lock:
             target = round((time + self.begin) / self.game.parameters.period)
             if target < self._steps:
-                before = self.model
                 self._start()
-                before.forget()
             self._play_to(target)
 
     def to_next_conflict(self, robot: int) -> None:

@@ -90,7 +90,6 @@ def other_games(directory: Path) -> Iterator[tuple[str, Game, int]]:
     taught = GameModel(game(("attack", 8), ("learner", 8), learning=300.0), seed=13)
     taught.play()
     save_policies(taught, 2, directory / "learned.json")
-    taught.forget()
     yield "learned file", game(("attack", 8), (f"learned(file='{directory}/learned.json')", 8)), 14
 
 

@@ -133,7 +133,7 @@ def test_a_snapshot_must_fit_the_game(opponent: int, action: str) -> None:
 
 def test_a_step_reports_a_stopped_clock() -> None:
     Path("faulty.py").write_text(POLICY.replace("FAULT", "raise StopSimulation(None)"))
-    model = ForagingModel(n=12, policies="avoid,faulty.py:Faulty", duration=60)
+    model = ForagingModel(n=12, policies="avoid,faulty.py:Faulty", duration=60, seed=0)
     with pytest.raises(RuntimeError, match=r"the clock was stopped at \d+"):  # noqa: PT012  # any step may raise it
         while model.running:
             model.step()
@@ -141,8 +141,8 @@ def test_a_step_reports_a_stopped_clock() -> None:
 
 @pytest.mark.parametrize("swarm", [0, 3, -1])
 def test_policies_are_saved_only_for_swarms_of_the_game(swarm: int) -> None:
-    model: GameModel = ForagingModel(n=4, policies="learner,learner", learning=10, duration=10)
-    with pytest.raises(InputError, match=f"swarm={swarm}: must be in 1 to 2"):
+    model: GameModel = ForagingModel(n=4, policies="learner,learner", learning=10, duration=10, seed=0)
+    with pytest.raises(InputError, match=f"swarm={swarm}: must be a whole number from 1 to 2"):
         save_policies(model, swarm, Path("learned.json"))
     assert not Path("learned.json").exists()
 
@@ -156,7 +156,7 @@ def test_policies_are_saved_only_for_swarms_of_the_game(swarm: int) -> None:
     ],
 )
 def test_a_damaged_file_of_learned_policies_is_refused(before: str, after: str) -> None:
-    model = ForagingModel(n=4, policies="learner,avoid", learning=0, duration=0.1)
+    model = ForagingModel(n=4, policies="learner,avoid", learning=0, duration=0.1, seed=0)
     path = Path("learned.json")
     save_policies(model, 1, path)
     assert before in path.read_text()

@@ -47,7 +47,7 @@ def test_the_switch_changes_nothing_in_the_world(policies: str, preempt: bool) -
     rest = {"supply": 9, "parameters": PRESETS["fitted"].replace(preempt=preempt)}
     phased = play_learning_phase(game(*policies.split(","), **rest))
     rest |= {"duration": LEARNING + MEASURED, "sample_period": LEARNING}
-    whole = GameModel(game(*policies.split(","), learning=0.0, **rest))
+    whole = GameModel(game(*policies.split(","), learning=0.0, **rest), 0)
     whole.step()
     assert world(phased) == world(whole)
     # Actions and transports are under way, which a restart would interrupt.
@@ -180,7 +180,7 @@ def test_the_first_conflict_of_the_measured_game_rewards_nothing() -> None:
 
 
 def test_simpy_events_end_both_phases() -> None:
-    model = GameModel(game("attack", "learner"), record="conflicts")
+    model = GameModel(game("attack", "learner"), 0, "conflicts")
     while model.phase == "learning":
         model.env.step()
     assert model.env.now == SWITCH

@@ -71,6 +71,8 @@ def games(draw: st.DrawFn, swarms: st.SearchStrategy[int] = st.integers(1, 5)) -
 def check_bodies(model: GameModel, before: np.ndarray[Any, Any]) -> None:
     """Check that no robots overlap, are outside, or moved much farther than they drive."""
     positions, body = model.states.positions, model.game.body
+    if len(positions) == 0:
+        return
     if len(positions) > 1:
         assert pdist(positions).min() > 2 * body.radius - 1e-4
     assert np.abs(positions).max() <= model.arena.half - body.radius + ROUNDING
@@ -98,7 +100,8 @@ def check_results(model: GameModel) -> None:
     assert sum(row["sud"] for row in rows) == (2 - len(rows)) * total
     period = game.parameters.period
     assert sum(row["size"] for row in rows) == game.size - len(game.absent)
-    for row, swarm, members in zip(rows, game.swarms, model.members, strict=True):
+    players = [model.players(swarm) for swarm in range(len(rows))]
+    for row, swarm, members in zip(rows, game.swarms, players, strict=True):
         assert (row["size"], row["policy"]) == (len(members), swarm.policy)
         assert row["pucks"] == sum(robot.pucks for robot in members)
         begun = row["conflicts_intra"] + row["conflicts_inter"]
@@ -117,17 +120,19 @@ def check_results(model: GameModel) -> None:
 
 @pytest.mark.slow
 @settings(max_examples=300)
-@given(games(), st.integers(0, 2**32))
-@example(make_game("aggressive", "aggressive", size=25, duration=20.0), 0)  # jams at the walls
-def test_bodies_times_and_pucks_in_every_period(game: Game, seed: int) -> None:
+@given(games(), st.integers(0, 2**32), st.dictionaries(st.integers(0, 150), st.integers(0, 79), max_size=9))
+@example(make_game("aggressive", "aggressive", size=25, duration=20.0), 0, {})  # jams at the walls
+def test_bodies_times_and_pucks_in_every_period(game: Game, seed: int, removals: dict[int, int]) -> None:
+    """`removals` are rows of robots that are removed, by period."""
     model = GameModel(game.replace(sample_period=game.parameters.period), seed)
-    before = model.states.positions.copy()
     while not model.ended:
+        if model.now in removals and model.robots:
+            model.robots[removals[model.now] % len(model.robots)].remove()
+        before = model.states.positions.copy()
         model.step()  # one control period
         check_bodies(model, before)
         check_times_and_pucks(model)
         check_supply(model)
-        before = model.states.positions.copy()
     check_results(model)
     event(f"ended: {model.ended}")
     event(f"supply: {'none' if game.supply is None else 'used up' if not any(model.supply) else 'left'}")

@@ -12,9 +12,8 @@ from kswarms.model.foraging import ForagingModel
 
 
 def test_the_defaults() -> None:
-    model = ForagingModel()
-    assert model.game == Game(swarms=(Swarm(policy="avoid", size=10), Swarm(policy="attack", size=10)))
-    assert model.seed == 0
+    game = ForagingModel().game
+    assert game == Game(swarms=(Swarm(policy="avoid", size=10), Swarm(policy="attack", size=10)))
 
 
 @pytest.mark.parametrize(
@@ -82,8 +81,6 @@ def test_numpy_numbers_are_accepted() -> None:
         ({"duration": 0}, "duration=0: must be greater than 0"),
         ({"seed": -1}, "seed=-1: must be a whole number ≥ 0"),
         ({"seed": 1.5}, "seed=1.5: must be a whole number"),
-        ({"seed": None}, "seed=None: must be a whole number"),
-        ({"seed": "7"}, "seed='7': must be a whole number"),
         ({"record": "video"}, "record='video': must be one of model, agents, conflicts, robots, trajectory"),
         ({"record": "model,video"}, "record='video': "),
         ({"policies": None}, "policies=None: must be a text or a sequence"),
@@ -93,6 +90,13 @@ def test_numpy_numbers_are_accepted() -> None:
         ({"parameters": None}, "parameters=None: must be a valid dictionary or"),
         ({"record": ["model"]}, "record=['model']: must be a text"),
         ({"seed": True}, "seed=True: must be a whole number"),
+        ({"n": True}, "n=True: must be a whole number"),
+        ({"policies": 3}, "policies=3: must be a text or a sequence"),
+        ({"policies": {"avoid": 3}}, "policies={'avoid': 3}: must be a text or a sequence"),
+        ({"shares": None}, "shares=None: must be a text"),
+        ({"drives": (0.6, 0.7)}, "drives=(0.6, 0.7): must be a text"),
+        ({"layout": 3}, "layout=3: "),
+        ({"duration": "long"}, "duration='long': must be a valid number"),
         ({"robots": 3}, "robots=3: unknown field; allowed: layout, stations, "),
     ],
 )

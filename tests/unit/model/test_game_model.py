@@ -27,7 +27,7 @@ def played(record: str = "", sample_period: float = 10.0, seed: int = 2) -> Game
 
 
 def test_a_game_is_a_mesa_model_of_robots_in_a_continuous_space() -> None:
-    model = GameModel(GAME)
+    model = GameModel(GAME, 2)
     assert isinstance(model, mesa.Model)
     assert list(model.agents) == model.robots == list(model.space.agents)
     assert [robot.index for robot in model.robots] == list(range(12))
@@ -49,7 +49,7 @@ def test_games_with_parameters_at_their_limits_can_be_played() -> None:
 
 
 def test_positions_are_the_kernels_own_memory() -> None:
-    model = GameModel(GAME)
+    model = GameModel(GAME, 2)
     for robot in model.robots:
         assert np.shares_memory(robot.position, model.states.positions)
         assert np.shares_memory(robot.position, model.space.agent_positions)
@@ -63,7 +63,7 @@ def test_positions_are_the_kernels_own_memory() -> None:
 
 
 def test_setting_a_position_moves_the_robot() -> None:
-    model = GameModel(GAME)
+    model = GameModel(GAME, 2)
     model.env.run(until=5)
     model.robots[0].position = np.array([0.31, -0.27])
     model.env.run(until=6)
@@ -71,7 +71,7 @@ def test_setting_a_position_moves_the_robot() -> None:
 
 
 def test_neighbour_queries_are_right_at_any_time() -> None:
-    model = GameModel(GAME)
+    model = GameModel(GAME, 2)
     for until in (1, 40, 133):
         model.env.run(until=until)
         for robot in model.robots:
@@ -90,7 +90,8 @@ def test_the_samples_of_the_model() -> None:
     others = "size policy t_a_intra t_a_inter t_p conflicts_intra conflicts_inter"
     of_swarm = {*kinds, *others.split()}
     of_swarms = {f"{kind}_{k}" for kind in of_swarm for k in (1, 2, 3)}
-    assert set(frame.columns) == {"time", "game_time", "ended"} | of_swarms
+    assert set(frame.columns) == {"time", "game_time", "ended", "run_seed"} | of_swarms
+    assert frame["ended"].tolist() == ["running"] * 6 + ["time"]
     assert frame["time"].tolist() == [0, 10, 20, 30, 40, 50, 60] == model.sample_times
     start, end = frame.iloc[0], frame.iloc[-1]
     assert [start[f"{kind}_1"] for kind in kinds] == [0, 0, 0, 1]

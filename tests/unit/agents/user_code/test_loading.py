@@ -37,7 +37,7 @@ def files(policy: str) -> list[Path]:
 
 
 def play_out(policy: str) -> GameModel:
-    model = GameModel(game(policy, learning=60.0), record="conflicts,robots")
+    model = GameModel(game(policy, learning=60.0), seed=0, record="conflicts,robots")
     model.play()
     return model
 
@@ -200,7 +200,7 @@ def test_a_learner_without_a_snapshot_has_no_rows() -> None:
 
 
 def test_learning_ends_with_the_learning_phase() -> None:
-    model = GameModel(game("own.py:Tally", learning=60.0))
+    model = GameModel(game("own.py:Tally", learning=60.0), seed=0)
     model.env.run(until=600)
     before = [snapshot_of(robot.policy) for robot in model.members[1]]
     assert sum(arm["count"] for arms in before for arm in arms) > 0
