@@ -10,8 +10,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
-from kswarms.scenarios.cli import invoke
-from kswarms.scenarios.cli import run as run_command
+from kswarms.scenarios.cli import invoke, playing
+from kswarms.scenarios.cli.playing import Plan
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.runs.errors import RunError
 from kswarms.scenarios.runs.run import expand
@@ -215,11 +215,11 @@ def test_all_plays_the_scenarios_that_the_densities_suit(
 ) -> None:
     played = []
 
-    def note(scenarios: list[Scenario], *_rest: object) -> tuple[list[Path], int]:
-        played.extend((label[0], run.n) for run in expand(scenarios) for label in run.labels)
+    def note(_out: Path, plan: Plan, *_rest: object) -> tuple[list[Path], int]:
+        played.extend((label[0], run.n) for run in expand(plan.scenarios) for label in run.labels)
         return [], 0
 
-    monkeypatch.setattr(run_command, "_play", note)
+    monkeypatch.setattr(playing, "play_study", note)
     assert invoke(["run", "--all", "--densities", "6,13", "--seeds", "1", "--no-figures"]) == 0
     sizes = {name: {n for played_name, n in played if played_name == name} for name in CATALOGUE}
     exceptions = {"fig-6.15": {6, 13}, "fig-7.12": {13}, "fig-7.13a": {13}, "fig-7.13b": {13}}
@@ -239,7 +239,7 @@ def test_a_failing_run_and_a_full_disk_are_reported_and_nothing_is_written(
         def play(*_rest: object) -> None:
             raise error
 
-        monkeypatch.setattr(run_command, "_play", play)
+        monkeypatch.setattr(playing, "play_study", play)
 
     fail(RunError("run n=6 seed=0 failed: ZeroDivisionError: division by zero", "Traceback: here"))
     assert invoke(["run", "fig-6.1a", *QUICK]) == 1
