@@ -24,8 +24,8 @@ _HALF_MOMENTUM: Final = 6
 """Passes with momentum after which that fraction is a half."""
 _PASSES: Final = 200
 """Passes between two searches for close pairs."""
-_ROUNDS: Final = 200
-"""Maximum number of searches."""
+_MAX_PASSES: Final = 40_000
+"""Maximum number of passes. In a crowd that shoves, some hundred short searches precede the last one."""
 _STUCK: Final = 1000
 """Passes after which the relaxation assumes a straight row between walls, which passes cannot separate."""
 _TURN: Final = 0.01
@@ -67,7 +67,7 @@ def relax(positions: Floats, radius: float, half: float, work: Records, pairs: R
         positions[i, 0] = min(limit, max(-limit, positions[i, 0]))
         positions[i, 1] = min(limit, max(-limit, positions[i, 1]))
     done = 0
-    for _ in range(_ROUNDS):
+    while done < _MAX_PASSES:
         n_close, worst = _find_close(positions, radius, pairs, n_pairs)
         if worst <= TOLERANCE:
             return done

@@ -7,7 +7,9 @@ import numpy as np
 from hypothesis import strategies as st
 from numpy.typing import ArrayLike
 
+from kswarms.agents.body import BODIES
 from kswarms.agents.common.arrays import Floats, Integers
+from kswarms.agents.common.limits import LONGEST_STEP
 from kswarms.agents.robot.state import ACTION, IDLE, RobotStates
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game, Swarm, apportion
@@ -94,6 +96,42 @@ def scenes(draw: st.DrawFn, largest: int = 60) -> Scene:
     robots["stride"] = rng.choice((0.0, 0.5, 1.0), n, p=(0.2, 0.1, 0.7)) * fastest
     robots["turn_rate"] = rng.choice((0.0, -0.296, 0.5), n, p=(0.6, 0.2, 0.2))
     return scene
+
+
+@st.composite
+def crowded_games(draw: st.DrawFn) -> Game:
+    """Draw a game whose robots cover 62 to 70 % of the arena, drive fast and shove.
+
+    70 % is the largest cover that a game allows.
+    """
+    body = BODIES[draw(st.sampled_from(("krembot", "krembot-sim")))]
+    n, cover = draw(st.integers(20, 150)), draw(st.floats(0.62, 0.699))
+    side = math.sqrt(n * math.pi * body.radius**2 / cover)
+    period = draw(st.sampled_from((0.05, 0.1)))
+    fastest = min(1.0, LONGEST_STEP * body.radius / (period * body.top_speed))
+    drive = fastest * draw(st.sampled_from((1.0, 0.7)))
+    sizes = apportion(n, [1] * draw(st.integers(1, 3)))
+    policy = st.sampled_from(("mixed", "aggressive", "attack", "avoid"))
+    return Game(
+        swarms=tuple(
+            Swarm(policy=draw(policy), size=size, drive=drive, drive_action=fastest) for size in sizes
+        ),
+        body=body,
+        side=side,
+        duration=8.0,
+        parameters=PRESETS[draw(st.sampled_from(tuple(PRESETS)))].replace(
+            period=period,
+            conflict_distance=draw(st.sampled_from((0.5, 0.1))),
+            fight_duration=draw(st.sampled_from((10.0, 1.0))),
+            leg_mean=draw(st.sampled_from((100.0, 6.7))),
+            station_radius=0.07 * side,
+            base_radius=0.07 * side,
+            friction=draw(st.sampled_from((0.0, 0.18, 1.0, 1.5))),
+            push_share=draw(st.sampled_from((1.0, 0.7))),
+            clearance=0.0,
+            wall_clearance=0.0,
+        ),
+    )
 
 
 def crowd(
