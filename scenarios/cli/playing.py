@@ -11,6 +11,7 @@ from kswarms.scenarios.cli.printing import warn
 from kswarms.scenarios.cli.progress import ProgressStyle, show_progress
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.runs.dask import dask_executor
+from kswarms.scenarios.study.file_systems import network_file_system
 from kswarms.scenarios.study.study import Study
 
 
@@ -33,6 +34,9 @@ class Plan:
 def play_study(out: Path, plan: Plan, command: str, progress: ProgressStyle) -> tuple[list[Path], int]:
     """Play the missing runs of a study; return the tables written and the number of failed runs."""
     failed, playing = 0, False
+    if kind := network_file_system(out):
+        advice = "safer and faster: --out on a local disk, such as $TMPDIR; copy the directory afterwards"
+        warn(f"{out} is on a network file system ({kind}), which can damage a ledger; {advice}")
     try:
         with _executor(plan) as (executor, workers), Study(out, command, plan.allow_mixed) as study:
             runs = study.plan(plan.scenarios, plan.first_seed, plan.records)

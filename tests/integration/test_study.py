@@ -227,3 +227,14 @@ def test_an_outcome_replaces_a_failure(tmp_path: Path) -> None:
         assert ledger.outcome(run.digest) == (outcome.swarms, outcome.policies)
         assert ledger.unfinished([run], []) == []
         assert ledger.unfinished([run], ["robots"]) == [run]
+
+
+def test_a_network_file_system_is_reported_before_the_games(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for module in ("cli.playing", "study.database"):
+        monkeypatch.setattr(f"kswarms.scenarios.{module}.network_file_system", lambda _: "nfs4")
+    assert invoke([*RUN, "--seeds", "1"]) == 0
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("kswarms: results is on a network file system (nfs4), which can damage a ledger; ")
+    assert invoke(["status", "results"]) == 0

@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pyarrow.parquet as pq
 import pytest
@@ -124,8 +125,8 @@ def test_a_full_disk_stops_the_sweep_and_keeps_finished_runs(
     whole = uninterrupted_tables()
     real = sqlite3.connect
 
-    def small(path: Path) -> sqlite3.Connection:
-        connection = real(path)
+    def small(path: Path, **options: Any) -> sqlite3.Connection:
+        connection: sqlite3.Connection = real(path, **options)
         connection.execute("PRAGMA max_page_count = 40")
         return connection
 

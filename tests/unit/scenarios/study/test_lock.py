@@ -49,9 +49,7 @@ def test_a_file_system_without_locks_is_refused(tmp_path: Path, monkeypatch: pyt
         raise OSError(ENOSYS, "Function not implemented")
 
     monkeypatch.setattr(fcntl, "flock", refuse)
-    with pytest.raises(
-        InputError, match=r"cannot be locked .Function not implemented.; use a dir"
-    ):
+    with pytest.raises(InputError, match=r"cannot be locked .Function not implemented.; use a dir"):
         directory_lock(tmp_path, "").__enter__()
     assert lock_holder(tmp_path) == ""
 
