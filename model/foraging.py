@@ -53,6 +53,8 @@ class ForagingModel(GameModel):
         for name, text in (("shares", shares), ("drives", drives), ("record", record)):
             if not isinstance(text, str):
                 raise InputError(name, text, "must be a text")
+        if "swarms" in fields:
+            raise InputError("swarms", fields["swarms"], "unknown field; use n, policies, shares and drives")
         super().__init__(Game(swarms=_swarms(n, policies, shares, drives), **fields), seed, record, rng)
 
 

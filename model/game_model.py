@@ -81,9 +81,8 @@ class GameModel(GameState):
         return self.recorder.sample_times
 
     def step(self) -> None:
-        """Play one sampling period; after the end of the game, stop the model."""
-        if self.ended:
-            self.running = False
+        """Play one sampling period, or to the end of the game, which stops the model."""
+        if self.ended:  # the user ran the clock
             return
         until = self.now - self.now % self._sample_every + self._sample_every
         self.env.run(until=until)
@@ -103,13 +102,17 @@ class GameModel(GameState):
 
     def _wrapped_step(self, *arguments: Any, **named: Any) -> None:
         """Sample after each step, which a subclass may define; Mesa calls this as `step`."""
+        if self._sampled_end:
+            self.running = False
+            return
         samples = self.recorder.sample_times
         self.steps = len(samples) - 1
         if self.steps == self.now == 0:
             self._sample()  # again: a subclass may have added reporters
         super()._wrapped_step(*arguments, **named)
-        if not self._sampled_end:
-            self._sample()
+        if self.ended:
+            self.running = False
+        self._sample()
         if not self.running:
             self.steps = len(samples)  # `mesa.batch_run` reads the row before this number
 

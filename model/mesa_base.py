@@ -1,6 +1,5 @@
 """Mesa's classes, adapted so that what they offer in public works on a game or is refused."""
 
-import itertools
 import random
 from typing import Any, Final, NoReturn
 
@@ -67,6 +66,7 @@ class RobotSpace(ContinuousSpace):
 
     def _add_agent(self, agent: mesa.Agent) -> int:
         if self._n_agents == len(self.positions):
+            agent.model.deregister_agent(agent)
             raise InputError("space", agent, "has only robots: create a space for other agents")
         index: int = super()._add_agent(agent)
         self._share(self.positions)
@@ -87,7 +87,7 @@ class RobotSet(AgentSet):
 
 
 class MesaModel(mesa.Model):
-    """A Mesa model that is freed when it is no longer used, and whose agents change only with the game.
+    """A Mesa model with a seed, whose sets of agents are copies.
 
     Attributes
     ----------
@@ -97,7 +97,6 @@ class MesaModel(mesa.Model):
 
     def __init__(self, seed: float | str | None, rng: Rng | None) -> None:
         self.seed = seed_of_run(seed, rng)
-        self._unique_ids = itertools.count(1)
         super().__init__(seed=self.seed)
         if isinstance(rng, np.random.Generator):
             self.rng = rng
@@ -111,14 +110,6 @@ class MesaModel(mesa.Model):
     def agents_by_type(self) -> dict[type[mesa.Agent], AgentSet]:
         """The agents by their class, copies."""
         return {kind: RobotSet(agents, self.random) for kind, agents in self._agents_by_type.items()}
-
-    def register_agent(self, agent: mesa.Agent) -> None:
-        """Register an agent; Mesa calls this when the agent is created."""
-        # Mesa counts the agents of each model in a dictionary of the class, which would keep all models.
-        mesa.Agent._ids.pop(self, None)
-        if agent not in self._agents:
-            agent.unique_id = next(self._unique_ids)
-        super().register_agent(agent)  # type: ignore[no-untyped-call]
 
     def __reduce_ex__(self, _: object) -> NoReturn:
         raise TypeError("a game cannot be copied or pickled; play it again from model.game and model.seed")

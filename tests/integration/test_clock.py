@@ -227,10 +227,10 @@ def test_a_step_is_one_sampling_period(duration: float, sample_period: float, ti
         assert model.ended == ""
         model.step()
         assert model.time == pytest.approx(time)
-        assert model.running
+        assert model.running == (time < times[-1])
     assert model.ended == "time"
     results = model.results()
-    for _ in range(2):  # the next steps only stop the model
+    for _ in range(2):
         model.step()
         assert not model.running
     assert model.results() == results

@@ -57,7 +57,7 @@ def test_numpy_numbers_are_accepted() -> None:
     [
         ({"n": 1}, "n=1: must be a whole number ≥ 2"),
         ({"n": 0}, "n=0: "),
-        ({"n": 10**400}, f"n={10**400}: must be at most 1000000"),
+        ({"n": 10**400}, "n=1000000"),
         ({"n": 5.5}, "n=5.5: must be a whole number"),
         ({"n": math.nan}, "n=nan: "),
         ({"n": "ten"}, "n='ten': "),
@@ -96,6 +96,8 @@ def test_numpy_numbers_are_accepted() -> None:
         ({"shares": None}, "shares=None: must be a text"),
         ({"drives": (0.6, 0.7)}, "drives=(0.6, 0.7): must be a text"),
         ({"layout": 3}, "layout=3: "),
+        ({"policies": b"avoid"}, "policy=97: "),
+        ({"swarms": []}, "swarms=[]: unknown field; use n, policies, shares and drives"),
         ({"duration": "long"}, "duration='long': must be a valid number"),
         ({"robots": 3}, "robots=3: unknown field; allowed: layout, stations, "),
     ],
