@@ -16,6 +16,7 @@ MAX_SEED: Final = 2**53  # seed, so that every table and file stores it exactly
 MAX_POINTS: Final = 1000  # number of conditions of a scenario with a grid
 LONGEST_NAME: Final = 100  # characters of a name, which files are named after
 LONGEST_TITLE: Final = 200  # characters of a title
+MAX_RUN_LIMIT: Final = 1e7  # time limit of a run (s)
 MAX_JOBS: Final = 1024  # worker processes
 MAX_TEXT_FILE: Final = 10_000_000  # bytes of a TOML or Python file
 MAX_CODE_FILES: Final = 10_000  # files of a package with user-defined code

@@ -20,7 +20,7 @@ STATEFUL = "its two trial games differ: does it use global random numbers or kee
 """Rule that a policy breaks if the same robots with the same seed act differently."""
 
 
-def try_policy(spec: PolicySpec, setting: Setting, robots: int = 2, conflicts: int = 4) -> str:
+def try_policy(spec: PolicySpec, setting: Setting, robots: int = 1, conflicts: int = 7) -> str:
     """Exercise the user-defined parts of a policy, so that errors surface before the game.
 
     A policy with a text plays two equal trial games, which must agree. A class or factory without a text
@@ -31,7 +31,8 @@ def try_policy(spec: PolicySpec, setting: Setting, robots: int = 2, conflicts: i
     setting : Setting
         Swarm, swarms and actions of the robots of the trial game.
     robots, conflicts : int
-        Number of robots, and of conflicts of each robot.
+        Number of robots, and of conflicts of each robot. A counter is noticed unless its period divides their
+        product.
 
     Returns
     -------
@@ -82,5 +83,5 @@ def _try(field: str, reference: str, attempt: Callable[[], Any]) -> None:
     with user_errors(field, reference, "its trial"):
         try:
             attempt()
-        except CheckError as error:
+        except (CheckError, InputError) as error:
             raise InputError(field, reference, str(error)) from None

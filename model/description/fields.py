@@ -42,6 +42,11 @@ class SwarmFields(FrozenModel):
         text = all(spec.call is not None for spec in specs)
         return {**values, "policy": "+".join(map(str, specs)) if text else specs}
 
+    @property
+    def runs_user_code(self) -> bool:
+        """Whether a policy of the swarm executes user-defined code."""
+        return any(spec.runs_user_code for spec in parse_policies(self.policy))
+
     @field_serializer("policy")
     def _dump_policy(self, _: object) -> str:
         return self.policy_name

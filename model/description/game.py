@@ -129,7 +129,7 @@ class Game(GameFields):
     @property
     def runs_user_code(self) -> bool:
         """Whether a game of this description executes user-defined code."""
-        return any(spec.runs_user_code for swarm in self.swarms for spec in parse_policies(swarm.policy))
+        return any(swarm.runs_user_code for swarm in self.swarms)
 
     @property
     def action_set(self) -> tuple[Action, ...]:

@@ -59,8 +59,10 @@ def contribution(
     from kswarms.analysis.tables.contribution import contribution_tables
     from kswarms.scenarios.contribution.games import RECORD, contributions, parse_robots
     from kswarms.scenarios.contribution.table import prepare_table, write_table
+    from kswarms.scenarios.runs.trial import require_trials
 
     numbers = parse_robots(game, robots)
+    require_trials([game])
     prepare_table(out)
     found = contributions(
         game,

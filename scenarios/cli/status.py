@@ -55,7 +55,7 @@ def replay(
 
     Example: kswarms replay results 0c2b1f7a9d3e4f56
     """
-    from kswarms.scenarios.runs.play import play
+    from kswarms.scenarios.runs.sweep import play_all
     from kswarms.scenarios.watch.recorded_run import require_no_user_code
 
     with Ledger(directory / LEDGER_FILE) as ledger:
@@ -64,7 +64,7 @@ def replay(
     if not trust:
         require_no_user_code(run)
     print_line(str(run))
-    outcome = play(run)
+    ((_, outcome),) = play_all([run])
     for row in (*outcome.swarms, *outcome.policies):
         print_line("  " + ", ".join(f"{name}={value!r}" for name, value in row.items()))
     if kept is None:

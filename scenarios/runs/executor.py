@@ -1,22 +1,35 @@
 """Play runs through an executor (`concurrent.futures.Executor`)."""
 
 from collections import deque
-from collections.abc import Generator
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
-from queue import SimpleQueue
-from typing import Any
+from queue import Empty, SimpleQueue
+from typing import Any, Final
 
 from kswarms.scenarios.runs.outcome import Failure, Outcome
-from kswarms.scenarios.runs.play import attempt
-from kswarms.scenarios.runs.run import Run, code_version
+from kswarms.scenarios.runs.run import Run
+
+WATCH_EVERY: Final = 5.0
+"""Time between two calls of `watch` (s)."""
 
 
 def play_through(
-    executor: Executor, waiting: deque[Run], at_once: int, record: str
+    executor: Executor,
+    waiting: deque[Run],
+    at_once: int,
+    task: Callable[[Run], tuple[Outcome | Failure, float]],
+    watch: Callable[[Sequence[Run]], None] | None = None,
 ) -> Generator[tuple[Run, Outcome | Failure | None, float], None, None]:
     """Play runs through an executor, at most `at_once` at a time; yield run, result and CPU time (s).
 
     If the executor breaks, the result of each unfinished submitted run is None. Other runs stay in `waiting`.
+
+    Parameters
+    ----------
+    task : callable
+        Plays a run in a worker.
+    watch : callable, optional
+        Is called with the running runs at intervals.
     """
     ended: SimpleQueue[Future[Any]] = SimpleQueue()
     playing: dict[Future[Any], Run] = {}
@@ -24,7 +37,7 @@ def play_through(
     while True:
         while waiting and len(playing) < at_once and not broken:
             try:
-                future = executor.submit(attempt, waiting[0], record, code_version())
+                future = executor.submit(task, waiting[0])
             except BrokenExecutor:
                 broken = True
             else:
@@ -32,7 +45,12 @@ def play_through(
                 future.add_done_callback(ended.put)
         if not playing:
             return
-        future = ended.get()
+        try:
+            future = ended.get(timeout=WATCH_EVERY)
+        except Empty:
+            if watch is not None:
+                watch([run for future, run in playing.items() if future.running()])
+            continue
         run = playing.pop(future)
         error = CancelledError() if future.cancelled() else future.exception()
         if isinstance(error, BrokenExecutor | CancelledError):

@@ -9,6 +9,7 @@ from kswarms.model.recorder import policy_rows
 from kswarms.scenarios.runs.errors import RunError
 from kswarms.scenarios.runs.outcome import Failure, Outcome
 from kswarms.scenarios.runs.run import Run, code_version, require_unchanged
+from kswarms.scenarios.runs.workers import time_limit
 
 
 def play(run: Run, record: str = "") -> Outcome:
@@ -62,3 +63,18 @@ def attempt(run: Run, record: str, code: str) -> tuple[Outcome | Failure, float]
     except RunError as error:
         result = Failure.of(error.__cause__ or error)
     return result, time.thread_time() - started
+
+
+def attempt_in_worker(
+    record: str, code: str, run_limit: float | None, run: Run
+) -> tuple[Outcome | Failure, float]:
+    """Play a run like `attempt`, for at most `run_limit` seconds.
+
+    Ctrl-C does not reach a worker, so every exception is a failure of the run.
+    """
+    started = time.thread_time()
+    try:
+        with time_limit(run_limit):
+            return attempt(run, record, code)
+    except BaseException as error:  # noqa: BLE001  # user-defined code may raise anything
+        return Failure.of(error), time.thread_time() - started

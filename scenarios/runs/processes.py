@@ -1,34 +1,38 @@
 """Play runs in worker processes of this machine, replaced at intervals and when one dies."""
 
-import os
-import signal
-import threading
+import logging
 from collections import Counter, deque
-from collections.abc import Generator, Iterator
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
-from contextlib import contextmanager
-from multiprocessing import active_children, get_context, parent_process
-from multiprocessing.synchronize import Event
-from typing import Any, Final
+from collections.abc import Callable, Generator, Sequence
+from functools import partial
+from time import monotonic
+from typing import Final
 
-from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.runs.executor import play_through
 from kswarms.scenarios.runs.outcome import Failure, Result
-from kswarms.scenarios.runs.run import Run
-from kswarms.scenarios.signals import deferred_signals
+from kswarms.scenarios.runs.play import attempt_in_worker
+from kswarms.scenarios.runs.run import Run, code_version
+from kswarms.scenarios.runs.workers import EXIT_TIMEOUT, new_workers
 
 GAMES_PER_WORKER: Final = 2500
 """Games per worker before it is replaced. Mesa keeps memory of each game, so workers grow."""
 MAX_DEATHS: Final = 3
 """A run fails when it was retried alone this many times and its worker died each time."""
+HINT_AFTER: Final = 60.0
+"""Minimum time of a run before a time limit is suggested (s)."""
+_HINT_FACTOR: Final = 20
+"""Minimum ratio of that time to the estimate."""
 
 
-def play_in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[Result, None, None]:
+def play_in_processes(
+    waiting: deque[Run], jobs: int, record: str, run_limit: float | None = None
+) -> Generator[Result, None, None]:
     """Play runs in `jobs` worker processes, and yield each result as its run ends.
 
     If a worker dies, its executor breaks. Any submitted run may be the cause, by its use of memory for
-    example. So all submitted runs are retried one at a time.
+    example. So all submitted runs are retried one at a time. A run fails after `run_limit` seconds.
     """
+    task = partial(attempt_in_worker, record, code_version(), run_limit)
+    watch = suggest_limit() if run_limit is None else None
     suspects: deque[Run] = deque()  # submitted runs of broken executors
     deaths: Counter[str] = Counter()
     while waiting or suspects:
@@ -39,17 +43,20 @@ def play_in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[
             # `max_tasks_per_child` of the executor hangs in Python 3.11, so each batch has a new executor.
             size = min(len(waiting), jobs * GAMES_PER_WORKER)
             batch, workers, at_once = deque(waiting.popleft() for _ in range(size)), jobs, 2 * jobs
-        with _new_workers(workers) as (executor, started):
-            for run, result, seconds in play_through(executor, batch, at_once, record):
+        with new_workers(workers) as executor:
+            began = monotonic()
+            for run, result, seconds in play_through(executor, batch, at_once, task, watch):
                 if result is not None:
                     yield run, result, seconds
+                    began = monotonic()
                     continue
-                if not started.is_set():
-                    reason = 'none started: is `if __name__ == "__main__"` missing?'
-                    raise InputError("jobs", jobs, f"needs worker processes, and {reason}")
+                executor.require_started()
                 if alone:
                     deaths[run.digest] += 1
-                if deaths[run.digest] < MAX_DEATHS:
+                took = monotonic() - began
+                if alone and run_limit is not None and took > run_limit + EXIT_TIMEOUT:
+                    yield run, Failure(f"took longer than {run_limit:g} s; its worker was killed"), 0.0
+                elif deaths[run.digest] < MAX_DEATHS:
                     suspects.appendleft(run)
                 else:
                     error = f"its worker process died {MAX_DEATHS} times: killed or out of memory?"
@@ -58,52 +65,20 @@ def play_in_processes(waiting: deque[Run], jobs: int, record: str) -> Generator[
             waiting.extendleft(reversed(batch))
 
 
-@contextmanager
-def _new_workers(jobs: int) -> Iterator[tuple[Executor, Event]]:
-    """Yield an executor with new processes, and an event that is set when one of them has started."""
-    others = set(active_children())
-    context = get_context("spawn")
-    with _blocked_signals():  # the process that tracks resources starts here
-        started = context.Event()
-    executor = _Workers(jobs, context, _start_worker, (started,))
-    try:
-        yield executor, started
-    except BaseException:
-        # After Ctrl-C, or when the caller stops: do not wait for games that may take minutes.
-        with deferred_signals():
-            for worker in set(active_children()) - others:
-                worker.terminate()
-        raise
-    finally:
-        executor.shutdown(cancel_futures=True)
+def suggest_limit() -> Callable[[Sequence[Run]], None]:
+    """Return a `watch` of `play_through` that suggests a time limit for the first long run."""
+    began: dict[str, float] = {}
+    suggested = False
 
+    def watch(running: Sequence[Run]) -> None:
+        nonlocal suggested
+        for run in running:
+            seconds = monotonic() - began.setdefault(run.digest, monotonic())
+            if not suggested and seconds > max(HINT_AFTER, _HINT_FACTOR * run.effort):
+                suggested = True
+                times = f"{seconds:.0f} s, over {_HINT_FACTOR} times its estimate"
+                logging.getLogger(__name__).warning(
+                    "kswarms: %s takes %s; --run-limit SECONDS ends such runs", run, times
+                )
 
-class _Workers(ProcessPoolExecutor):
-    def submit(self, *arguments: Any, **options: Any) -> Future[Any]:
-        with _blocked_signals():  # processes start here
-            return super().submit(*arguments, **options)
-
-
-@contextmanager
-def _blocked_signals() -> Iterator[None]:
-    """Block Ctrl-C and SIGHUP, which a terminal sends to all processes, in processes that start here.
-
-    Processes inherit the signal mask, so only the parent handles these signals.
-    """
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT, signal.SIGHUP])
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-
-
-def _start_worker(started: Event) -> None:
-    started.set()
-    threading.Thread(target=_exit_with_parent, daemon=True).start()
-
-
-def _exit_with_parent() -> None:
-    """End this process when its parent ends, even if the parent is killed."""
-    if (parent := parent_process()) is not None:
-        parent.join()
-        os._exit(1)
+    return watch

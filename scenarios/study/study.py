@@ -153,6 +153,7 @@ class Study:
         jobs: int = 1,
         records: Sequence[str] = (),
         executor: Executor | None = None,
+        run_limit: float | None = None,
     ) -> Generator[Result, None, None]:
         """Play runs; store each and then yield it with its outcome or failure, and its CPU time (s).
 
@@ -160,7 +161,7 @@ class Study:
         ----------
         runs : sequence of Run
             Runs that `plan` returned.
-        jobs, executor
+        jobs, executor, run_limit
             As for `kswarms.scenarios.runs.sweep.play_all`.
         records : sequence of str
             Names of the tables to record and store.
@@ -170,7 +171,7 @@ class Study:
         RunError
             If the executor breaks, or a worker has another environment and `allow_mixed` is False.
         """
-        with closing(sweep(runs, jobs, ",".join(records), executor)) as results:
+        with closing(sweep(runs, jobs, ",".join(records), executor, run_limit)) as results:
             for run, result, seconds in results:
                 if isinstance(result, Outcome):
                     self._require_environment(result)

@@ -61,7 +61,7 @@ class Deadly(Run):
     n = 0
 
     def __init__(self) -> None:
-        super().__init__("dead", None, 0, (("fig-0", ""),))
+        super().__init__("dead", CATALOGUE["fig-6.1a"].game("", 6), 0, (("fig-0", ""),))
 
     def __reduce__(self) -> tuple[object, ...]:
         return os._exit, (1,)

@@ -62,13 +62,12 @@ def test_worker_processes_give_the_same_results() -> None:
     assert set(pq.read_table(Path("2", "policies.parquet"))["condition"].to_pylist()) == {"2"}
 
 
-@pytest.mark.xfail(reason="code is tried when it plays, not yet when it is planned")
 def test_an_error_in_user_code_is_one_line_and_nothing_is_written(capsys: pytest.CaptureFixture[str]) -> None:
     code = Path("cautious.py").read_text()
     Path("cautious.py").write_text(code.replace("return self.flight", "return self.flee", 1))
     assert invoke(["run", "mine.toml", "--out", "results"]) == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert "policy='cautious.py:Cautious': its trial raises AttributeError: " in line
+    assert "policy='cautious.py:Cautious(patience=1)': its trial raises AttributeError: " in line
     assert "(cautious.py, line " in line
     assert not Path("results").exists()
 

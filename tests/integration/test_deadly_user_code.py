@@ -1,0 +1,243 @@
+"""User-defined code with hidden state, code that ends its process, and code that never returns."""
+
+import re
+from multiprocessing import active_children
+from pathlib import Path
+
+import pytest
+
+from kswarms.agents.actions import Action
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.policies.interface import Setting
+from kswarms.model.foraging import ForagingModel
+from kswarms.scenarios.cli import invoke
+from kswarms.scenarios.description.scenario import Scenario
+from kswarms.scenarios.runs import processes, trial, workers
+from kswarms.scenarios.runs.outcome import Failure, Outcome
+from kswarms.scenarios.runs.run import Run, expand
+from kswarms.scenarios.runs.sweep import sweep
+from kswarms.scenarios.runs.trial import require_trials
+from kswarms.scenarios.study.database import LEDGER_FILE
+from kswarms.scenarios.study.ledger import Ledger
+
+CODE = """
+import os
+import random
+import signal
+import sys
+import time
+
+import numpy as np
+from kswarms.agents.learning.rewards import Reward
+from kswarms.agents.learning.selection_rules import Rule
+
+IMPORT
+
+
+class Mine:
+    chosen = 0
+
+    def __init__(self, setting):
+        self.actions = setting.actions
+        self.own = 0
+        CONSTRUCT
+
+    def choose(self, opponent):
+        Mine.chosen += 1
+        self.own += 1
+        return self.actions[INDEX]
+
+
+class MyReward(Reward):
+    def of(self, *conflict):
+        return random.random()
+
+
+class MyRule(Rule):
+    def prefer(self, bandit, rng):
+        return int(np.random.random() < 0.5)
+"""
+
+
+@pytest.fixture(autouse=True)
+def _change_to_an_empty_directory(empty_directory: Path) -> None:
+    pass
+
+
+def runs_of(index: str = "0", at_import: str = "pass", construct: str = "pass", **fields: int) -> list[Run]:
+    """Write a file with code, and return runs of a short game with the policy of the file."""
+    code = {"IMPORT": at_import, "CONSTRUCT": construct, "INDEX": index}
+    text = CODE
+    for name, part in code.items():
+        text = text.replace(name, part)
+    Path("mine.py").write_text(text)
+    return expand([scenario("mine.py:Mine", **fields)])
+
+
+def scenario(policy: str, n: int = 6, seeds: int = 1) -> Scenario:
+    swarms = ({"policy": "avoid"}, {"policy": policy})
+    condition = {"duration": 60.0, "swarms": swarms}
+    return Scenario(id="mine", title="Own code", densities=(n,), seeds=seeds, conditions=(condition,))
+
+
+def failures(runs: list[Run], run_limit: float | None = None) -> list[str]:
+    """Play runs and return the errors of those that fail."""
+    return [
+        result.error for _, result, _ in sweep(runs, 1, "", None, run_limit) if isinstance(result, Failure)
+    ]
+
+
+HIDDEN = {
+    "random": "random.random() < 0.5",
+    "numpy": "int(np.random.random() < 0.5)",
+    "counter": "Mine.chosen // 3 % 2",
+    "clock": "int(time.time()) // 5 % 2",
+    "hashes of texts": "hash('fight') // 8 % 2",
+}
+"""Expressions of an action that depend on more than the conflict and the seed."""
+STATEFUL = "its two trial games differ: does it use global random numbers or keep state between robots?"
+
+
+@pytest.mark.parametrize("index", HIDDEN.values(), ids=HIDDEN.keys())
+def test_hidden_state_is_detected_when_runs_are_planned(index: str) -> None:
+    games = [run.game for run in runs_of(index)]
+    with pytest.raises(InputError, match=f"policy='mine.py:Mine': {re.escape(STATEFUL)}"):
+        require_trials(games)
+
+
+@pytest.mark.parametrize(
+    "policy", ["mine.py:Mine", "learner(reward='mine.py:MyReward')", "learner(rule='mine.py:MyRule')"]
+)
+def test_hidden_state_is_detected_when_a_model_is_built(policy: str) -> None:
+    runs_of(HIDDEN["counter"], at_import="random.seed(1)")
+    with pytest.raises(InputError, match=re.escape(STATEFUL)):
+        ForagingModel(n=6, policies=["avoid", policy])
+
+
+def test_a_factory_of_this_process_may_share_state_between_robots() -> None:
+    class Shared:
+        turns = 0
+
+        def __init__(self, setting: Setting) -> None:
+            self.actions = setting.actions
+
+        def choose(self, _opponent: int) -> Action:
+            Shared.turns += 1
+            return self.actions[Shared.turns % 2]
+
+    model = ForagingModel(n=6, policies=["avoid", Shared], duration=20)
+    model.play()
+    assert Shared.turns > 0
+
+
+RAISED = ["raise KeyboardInterrupt", "sys.exit('no')", "raise GeneratorExit", "raise BaseException('no')"]
+
+
+@pytest.mark.parametrize(("code", "place"), [*zip(RAISED, ["at_import", "construct"] * 2, strict=True)])
+def test_an_exception_that_ends_processes_is_an_error_of_the_code(code: str, place: str) -> None:
+    games = [run.game for run in runs_of(**{place: code})]
+    with pytest.raises(InputError, match=r"policy='mine.py:Mine': .* raises \w+"):
+        require_trials(games)
+
+
+DEADLY = {
+    "exit": "os._exit(7)",
+    "exit without an error": "os._exit(0)",
+    "signal": "os.kill(os.getpid(), signal.SIGKILL)",
+}
+ENDLESS = "sum(0 for _ in iter(int, 1))"
+PLACES = {
+    "import": {"at_import": "CODE"},
+    "construction": {"construct": "CODE"},
+    "choice": {"index": "0 if self.own < 3 else [CODE, 0][1]"},
+}
+
+
+@pytest.mark.parametrize(("code", "place"), [*zip(DEADLY, PLACES, strict=True)])
+def test_code_that_ends_its_process_fails_its_runs(code: str, place: str) -> None:
+    parts = {name: text.replace("CODE", DEADLY[code]) for name, text in PLACES[place].items()}
+    runs = runs_of(**parts, seeds=2)
+    require_trials(run.game for run in runs)
+    assert failures(runs) == ["policy='mine.py:Mine': its trial ended its worker process"] * 2
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_endless_code_fails_its_runs(place: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(trial, "TRIAL_LIMIT", 0.3)
+    parts = {name: text.replace("CODE", ENDLESS) for name, text in PLACES[place].items()}
+    runs = runs_of(**parts, seeds=2)
+    assert failures(runs) == ["policy='mine.py:Mine': its trial took longer than 0.3 s"] * 2
+
+
+LATE = "0 if self.own <= 20 else [CODE, 0][1]"
+"""An action; after the 19 conflicts of a trial game, code is executed."""
+
+
+@pytest.mark.slow
+def test_a_run_that_exceeds_its_limit_fails_and_no_other_is_lost() -> None:
+    late = runs_of(LATE.replace("CODE", ENDLESS), n=30)
+    others = expand([scenario("attack", seeds=2)])
+    results = {run.digest: result for run, result, _ in sweep([*late, *others], 1, run_limit=2.0)}
+    assert isinstance(failure := results.pop(late[0].digest), Failure)
+    assert failure.error == "TimeLimitError: took longer than 2 s"
+    assert 'mine.py", line' in failure.trace
+    assert results == {run.digest: result for run, result, _ in sweep(others)}
+
+
+@pytest.mark.slow
+def test_a_run_that_ignores_its_limit_is_killed() -> None:
+    ignore = "while self.own > 20:\n            try: time.sleep(100)\n            except BaseException: pass"
+    runs = runs_of("0", n=30)
+    code = Path("mine.py").read_text()
+    Path("mine.py").write_text(code.replace("self.own += 1", f"self.own += 1\n        {ignore}"))
+    runs = expand([scenario("mine.py:Mine", n=30)])
+    assert failures(runs, run_limit=1.0) == ["took longer than 1 s; its worker was killed"]
+
+
+@pytest.mark.slow
+def test_a_run_that_ends_its_process_after_the_trial_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(processes, "MAX_DEATHS", 1)
+    runs = runs_of(LATE.replace("CODE", "os._exit(0)"), n=30)
+    assert failures(runs) == ["its worker process died 1 times: killed or out of memory?"]
+
+
+def test_a_thread_of_user_code_does_not_keep_a_worker_alive(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workers, "EXIT_TIMEOUT", 0.2)
+    runs = runs_of(at_import="import threading; threading.Thread(target=time.sleep, args=(600,)).start()")
+    ((_, outcome, _),) = sweep(runs)
+    assert isinstance(outcome, Outcome)
+    assert active_children() == []
+
+
+def test_a_limit_is_suggested_once_for_a_long_run(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    runs = expand([scenario("attack", seeds=2)])
+    watch = processes.suggest_limit()
+    for now in (0.0, 59.0, 61.0, 70.0):
+        monkeypatch.setattr(processes, "monotonic", lambda now=now: now)
+        watch(runs)
+    (line,) = caplog.messages
+    assert line.startswith(f"kswarms: {runs[0]} takes 61 s, over 20 times its estimate; --run-limit SECONDS")
+
+
+def test_a_study_of_deadly_code_has_failed_rows(capsys: pytest.CaptureFixture[str]) -> None:
+    runs_of("[os._exit(7) if Mine.chosen > 40 else 0, 0][1]")
+    Path("mine.toml").write_text(scenario("mine.py:Mine").to_toml())
+    assert invoke(["run", "mine.toml", "--jobs", "1", "--quiet", "--no-figures", "--run-limit", "60"]) == 1
+    assert invoke(["status", "results"]) == 0
+    failed = "failed: mine, n=6, seed=0: policy='mine.py:Mine': its trial ended its worker process"
+    assert failed in capsys.readouterr().out.splitlines()
+    with Ledger(Path("results", LEDGER_FILE)) as ledger:
+        ((point, _, _),) = ledger.failed_runs()
+    assert invoke(["replay", "results", point.run, "--trust"]) == 1
+    assert "its trial ended its worker process" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("option", ["0", "-1", "nan", "inf", "1e300", "5 --scheduler tcp://localhost:1"])
+def test_a_limit_must_be_a_positive_number_of_seconds(
+    option: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke(f"run fig-6.1c --run-limit {option}".split()) == 2
+    assert capsys.readouterr().err.startswith("kswarms: run_limit=")
+    assert list(Path().iterdir()) == []
