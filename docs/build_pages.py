@@ -70,6 +70,10 @@ The fields of a [grid](../scenarios.md#a-grid-of-values) are further columns of 
 `policies.parquet`, after `n` and `seed`. They are named by the field, for example `side`. If a column has
 that name already, they begin with `grid.`, for example `grid.duration`.
 
+A table that is read is checked: numbers are finite and at most 2⁵³ in magnitude, texts are one line of at
+most 10,000 characters, no value is missing unless it is allowed, and the values of the key identify a row.
+Integers may be stored as reals, and texts as categories.
+
 {data_dictionary()}"""
 
 

@@ -17,6 +17,8 @@ MAX_POINTS: Final = 1000  # number of conditions of a scenario with a grid
 LONGEST_NAME: Final = 100  # characters of a name, which files are named after
 LONGEST_TITLE: Final = 200  # characters of a title
 MAX_RUN_LIMIT: Final = 1e7  # time limit of a run (s)
+# Text without line breaks, control characters and changes of the writing direction.
+ONE_LINE: Final = r"^[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]*$"
 MAX_JOBS: Final = 1024  # worker processes
 MAX_TEXT_FILE: Final = 10_000_000  # bytes of a TOML or Python file
 MAX_CODE_FILES: Final = 10_000  # files of a package with user-defined code

@@ -14,7 +14,8 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.colours import swarm_colour
 from kswarms.analysis.figures.style import figure_text, new_figure
 from kswarms.analysis.film.painter import ArenaLayout
-from kswarms.analysis.measures.conflict_density import CELL, conflict_density
+from kswarms.analysis.measures.conflict_density import cell_side, conflict_density
+from kswarms.analysis.results.tables import check_frame
 
 
 def heat_map_figure(conflicts: pd.DataFrame, title: str = "", arena: ArenaLayout | None = None) -> Figure:
@@ -36,6 +37,7 @@ def heat_map_figure(conflicts: pd.DataFrame, title: str = "", arena: ArenaLayout
     matplotlib.figure.Figure
         Panels with a common logarithmic scale; cells without conflicts are black.
     """
+    conflicts = check_frame(conflicts, "conflicts", ["x", "y", "action"])
     if conflicts.empty:
         raise InputError("conflicts", "no rows", "must hold at least one conflict")
     farthest = float(conflicts[["x", "y"]].abs().to_numpy().max())
@@ -47,7 +49,8 @@ def heat_map_figure(conflicts: pd.DataFrame, title: str = "", arena: ArenaLayout
     # Two robots stuck in a corner have so many conflicts that a linear scale would show only them.
     norm = LogNorm(1 / games, max(conflict_density(conflicts, half).max(), 2 / games))
     colours = colormaps["magma"].with_extremes(bad="black")
-    label = f"conflicts per game and {100 * CELL:.0f} × {100 * CELL:.0f} cm"
+    cell = 100 * cell_side(half)
+    label = f"conflicts per game and {cell:.0f} × {cell:.0f} cm"
     ticks = np.linspace(-half, half, 5)
     with new_figure(title, width=max(5.5, 4.0 * len(panel_rows)), height=4.4) as figure:
         panels = figure.subplots(1, len(panel_rows), squeeze=False, sharey=True)[0]

@@ -6,9 +6,11 @@
 
 import pandas as pd
 from matplotlib.figure import Figure
+from pandas.api.types import is_numeric_dtype
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.figures.style import draw_line, legend_below, new_figure, swarm_style
+from kswarms.analysis.results.tables import require_columns
 
 
 def pucks_over_time(samples: pd.DataFrame, title: str = "") -> Figure:
@@ -45,10 +47,15 @@ def time_share_over_time(samples: pd.DataFrame, title: str = "") -> Figure:
 
 
 def _over_time(samples: pd.DataFrame, quantity: str, label: str, title: str) -> Figure:
+    require_columns(samples, "samples", [])
     columns = samples.filter(regex=rf"^{quantity}_\d+$").columns
     swarms = sorted(int(name.rpartition("_")[2]) for name in columns)
     if not swarms or "time" not in samples:
         raise InputError("samples", list(samples), f"must have the columns time and {quantity}_1")
+    for name in ("time", *columns):
+        if not is_numeric_dtype(samples[name]):
+            field = f"samples column {name}"
+            raise InputError(field, str(samples[name].dtype), "must be a column of numbers")
     with new_figure(title) as figure:
         axes = figure.subplots()
         for swarm in swarms:

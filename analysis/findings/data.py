@@ -10,6 +10,7 @@ from kswarms.agents.theory.times import share_of_time
 from kswarms.analysis.findings.claims import Claim
 from kswarms.analysis.findings.quantity import LEARNED, Quantity
 from kswarms.analysis.results.runs import Results
+from kswarms.analysis.results.tables import require_columns
 from kswarms.analysis.statistics.intervals import Values
 
 _TIMES = ["t_a_intra", "t_a_inter", "t_p"]
@@ -87,7 +88,8 @@ def _by_seed(values: pd.Series) -> pd.DataFrame:
     return values.unstack("n").sort_index().sort_index(axis=1).astype(np.float64)
 
 
-def _select_curve(rows: pd.DataFrame, quantity: Quantity) -> pd.DataFrame:
+def _select_curve(rows: pd.DataFrame, quantity: Quantity, columns: Sequence[str]) -> pd.DataFrame:
+    require_columns(rows, "results", ["scenario", "condition", "n", "seed", "swarm", *columns])
     mask = (rows["scenario"] == quantity.scenario) & (rows["condition"] == quantity.condition)
     if quantity.swarm is not None:
         mask &= rows["swarm"] == quantity.swarm
@@ -96,10 +98,11 @@ def _select_curve(rows: pd.DataFrame, quantity: Quantity) -> pd.DataFrame:
 
 def _sum_swarms(results: Results, quantity: Quantity) -> pd.DataFrame:
     """Return the sums over the swarms of a quantity, by (n, seed)."""
-    rows = _select_curve(results.runs, quantity)
+    summed = [*_TIMES, *_COUNTS, "sud", "duration"]
+    rows = _select_curve(results.runs, quantity, summed)
     if rows.duplicated(["n", "seed", "swarm"]).any():
         raise InputError("runs", quantity.scenario, "must have one row for each condition, N, seed and swarm")
-    return rows.groupby(["n", "seed"])[[*_TIMES, *_COUNTS, "sud", "duration"]].sum()
+    return rows.groupby(["n", "seed"])[summed].sum()
 
 
 def _run_measure(results: Results, quantity: Quantity) -> pd.Series:
@@ -119,7 +122,8 @@ def _learned_measure(results: Results, quantity: Quantity) -> pd.Series:
     if results.policies is None:
         return pd.Series(dtype=np.float64, index=pd.MultiIndex.from_arrays([[], []], names=["n", "seed"]))
     # `attack_share` is repeated in the row of each action.
-    rows = _select_curve(results.policies, quantity).drop_duplicates(["n", "seed", "opponent"])
+    rows = _select_curve(results.policies, quantity, ["opponent", "attack_share"])
+    rows = rows.drop_duplicates(["n", "seed", "opponent"])
     within = quantity.measure == "learned_flight_within"
     rows = rows[(rows["opponent"] == rows["swarm"]) == within]
     if quantity.opponent is not None:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.theory.swarms import swarm_utility_difference
 from kswarms.analysis.measures.utilities import COLUMNS, robot_utilities, utilities_by_swarm
+from kswarms.analysis.results.tables import check_frame
 from kswarms.analysis.statistics.curves import spearman
 from kswarms.analysis.statistics.intervals import Interval, bootstrap_interval
 from kswarms.analysis.statistics.means import mean_by_group
@@ -64,12 +65,17 @@ def select_contributions(rows: pd.DataFrame, **selection: object) -> pd.DataFram
         The columns of `rows`, and: `pucks` and `time` (s), the contributions to SUD; `reward_rate`, reward
         per second of conflicts and following program time (Eq. 4.15), NaN without conflicts.
     """
+    rows = check_frame(rows, "contribution")
     for name, value in selection.items():
+        if name not in _SELECTION:
+            raise InputError(name, value, f"unknown column; allowed: {', '.join(_SELECTION)}")
         if value not in set(rows[name]):
             raise InputError(name, value, f"must be one of {', '.join(map(repr, sorted(set(rows[name]))))}")
         rows = rows[rows[name] == value]
     for name in _SELECTION:
         values = sorted(set(rows[name]))
+        if not values:
+            raise InputError("contribution", "no rows", "must hold at least one row")
         if len(values) != 1:
             raise InputError(name, selection.get(name), f"must be one of {', '.join(map(repr, values))}")
     rows = rows.reset_index(drop=True)

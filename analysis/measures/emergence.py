@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from kswarms.agents.common.errors import InputError
+from kswarms.analysis.results.tables import check_frame
 
 BINS = 40
 """Number of time intervals in the learning phase."""
@@ -19,6 +20,7 @@ BANDIT = ["swarm", "opponent_swarm"]
 
 def learning_conflicts(conflicts: pd.DataFrame) -> pd.DataFrame:
     """Return conflicts of the learning phase decided by a bandit; `InputError` if no swarm learned."""
+    conflicts = check_frame(conflicts, "conflicts", [*BANDIT, "phase", "robot", "start", "action", "q"])
     learned = conflicts[conflicts["q"].notna()]
     if learned.empty:
         raise InputError("conflicts", "no row with a Q", "must be of a game with a learner")
@@ -70,6 +72,7 @@ def preferences(robots: pd.DataFrame) -> pd.DataFrame:
     The result has one row for each `run` (if given), `swarm`, `opponent_swarm`, `robot` (int64) and tried
     `action` (str), with `q` (float64, reward per second) and `learned` (bool): whether it is the best action.
     """
+    robots = check_frame(robots, "robots", ["swarm", "robot", "arms"])
     keys = [name for name in ("run", "swarm", "robot") if name in robots]
     arms = robots[[*keys, "arms"]].explode("arms").dropna(subset="arms").reset_index(drop=True)
     if arms.empty:

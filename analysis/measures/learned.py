@@ -10,6 +10,7 @@ import pandas as pd
 
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.results.published import learned_percentages
+from kswarms.analysis.results.tables import rows_where
 from kswarms.analysis.statistics.means import mean_by_group
 
 _CURVE = ["scenario", "condition", "swarm", "opponent"]
@@ -35,7 +36,7 @@ def learned_shares(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataF
         * `published` (float64, %): published number, NaN if there is none;
         * `error` (float64, percentage points): measured − published.
     """
-    rows = policies[policies["scenario"].isin(scenarios)]
+    rows = rows_where(policies, "policies", "scenario", scenarios)
     if rows.empty:
         known = ", ".join(sorted(set(policies["scenario"])))
         raise InputError("scenarios", list(scenarios), f"must include one with learners: {known}")

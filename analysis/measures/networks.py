@@ -4,6 +4,10 @@ All functions take the conflicts of one game: rows of `conflicts.parquet`, or
 `model.datacollector.get_table_dataframe("conflicts")`.
 """
 
+import math
+from numbers import Real
+from typing import Final
+
 import networkx as nx
 import numpy as np
 import pandas as pd
@@ -11,7 +15,10 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from kswarms.agents.common.errors import InputError
+from kswarms.analysis.results.tables import check_frame
 
+_MAX_NODES: Final = 10**8
+"""Maximum number of pairs (moment, robot), which limits the memory of `jams`."""
 MIN_JAM_SIZE = 3
 """Minimum number of robots in a jam; a conflict of two robots is not a jam."""
 
@@ -26,6 +33,8 @@ def meeting_network(conflicts: pd.DataFrame) -> nx.Graph:
         with `meetings` (int): number of conflicts that either robot began; `time` (float, robot-seconds):
         T(a) of these conflicts; and `kind` (str): ``intra`` or ``inter``.
     """
+    columns = ["robot", "swarm", "opponent", "opponent_swarm", "t_a"]
+    conflicts = check_frame(conflicts, "conflicts", columns)
     if "run" in conflicts and conflicts["run"].nunique() > 1:
         raise InputError("conflicts", f"{conflicts['run'].nunique()} runs", "must be of one game")
     network = nx.Graph()
@@ -106,11 +115,17 @@ def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:
         `jams` (int64): connected components of at least `MIN_JAM_SIZE` robots, `jammed` (int64): robots in
         jams, `largest` (int64): robots in the largest component, 0 without conflicts.
     """
-    if every <= 0:
-        raise InputError("every", every, "must be above 0")
+    if not isinstance(every, Real) or not 0 < every < math.inf:
+        raise InputError("every", every, "must be a number above 0")
+    conflicts = check_frame(conflicts, "conflicts", ["robot", "opponent", "start", "t_a"])
     if conflicts.empty:
         raise InputError("conflicts", "no rows", "must hold at least one conflict")
-    start = conflicts["start"].to_numpy()
+    names, numbers = np.unique(conflicts[["robot", "opponent"]].to_numpy(), return_inverse=True)
+    robots, start = len(names), conflicts["start"].to_numpy()
+    seconds = (start + conflicts["t_a"].to_numpy()).max() - start.min()
+    if seconds / every * robots > _MAX_NODES:
+        rule = f"must be greater: the conflicts of {robots:,} robots last {seconds:g} s"
+        raise InputError("every", every, rule)
     # A conflict covers the moments with start ≤ moment < end. Subtract 1e-9 to absorb rounding errors.
     first = np.ceil(start / every - 1e-9).astype(int)
     last = np.ceil((start + conflicts["t_a"].to_numpy()) / every - 1e-9).astype(int)
@@ -119,10 +134,8 @@ def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:
     # One edge for each conflict and moment: `edge` is the row of the conflict.
     edge = np.repeat(np.arange(len(conflicts)), lengths)
     moment = np.arange(lengths.sum()) + np.repeat(first - origin - np.cumsum(lengths) + lengths, lengths)
-    robots = int(conflicts[["robot", "opponent"]].to_numpy().max()) + 1
     # A node is a pair (moment, robot). No edge joins two moments, so one call finds all components.
-    a = moment * robots + conflicts["robot"].to_numpy()[edge]
-    b = moment * robots + conflicts["opponent"].to_numpy()[edge]
+    a, b = (moment * robots + column[edge] for column in numbers.reshape(-1, 2).T)
     nodes = max(moments, 1) * robots
     graph = coo_array((np.ones(len(a), bool), (a, b)), shape=(nodes, nodes))
     _, component = connected_components(graph, directed=False)

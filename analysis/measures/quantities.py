@@ -8,6 +8,7 @@ import pandas as pd
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.theory.times import share_of_time
 from kswarms.agents.user_code.syntax import split_outside
+from kswarms.analysis.results.tables import rows_where
 
 TIME_SHARES: Final = ("total", "inter-swarm", "intra-swarm")
 """Kinds of conflict, as columns with the share of time of a swarm."""
@@ -33,8 +34,8 @@ class Curve:
 
 
 def scenario_rows(runs: pd.DataFrame, scenario: str) -> pd.DataFrame:
-    """Return the rows of a scenario; `InputError` if `runs` has none."""
-    rows = runs[runs["scenario"] == scenario]
+    """Return the rows of a scenario, checked by `check_frame`; `InputError` if `runs` has none."""
+    rows = rows_where(runs, "runs", "scenario", [scenario])
     if rows.empty:
         raise InputError("scenario", scenario, f"must be one of {', '.join(sorted(set(runs['scenario'])))}")
     return rows

@@ -41,6 +41,7 @@ from kswarms.agents.theory.times import (
     intra_utility,
     pair_utility,
 )
+from kswarms.analysis.results.tables import check_frame
 
 Weights = float | Mapping[int, float] | Mapping[tuple[int, int], float]
 """α or β: for all, by swarm, or by (swarm, opponent's swarm); swarms from 1."""
@@ -108,9 +109,7 @@ def utilities_by_swarm(robots: pd.DataFrame) -> pd.DataFrame:
 
 def _phase_conflicts(conflicts: pd.DataFrame, phase: str) -> pd.DataFrame:
     """Return the conflicts of a phase."""
-    missing = [name for name in COLUMNS if name not in conflicts.columns]
-    if missing:
-        raise InputError("conflicts", missing, "must have these columns too")
+    conflicts = check_frame(conflicts, "conflicts", COLUMNS)
     rows = conflicts[conflicts["phase"] == phase]
     if rows.empty:
         known = ", ".join(map(str, dict.fromkeys(conflicts["phase"]))) or "none"

@@ -7,7 +7,7 @@ import pandas as pd
 
 from kswarms.agents.common.columns import column_names
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.results.tables import check_columns
+from kswarms.analysis.results.tables import check_frame
 
 _KEY_COLUMNS: Final = ("run", "scenario", "condition", "n", "seed")
 _GAME_COLUMNS: Final = {*_KEY_COLUMNS, "swarm", "duration", "ended"}
@@ -55,23 +55,29 @@ def tables_of_sweep(
     runs, policies = [], []
     for index, (run, game) in enumerate(games.items()):
         swarms = _swarms(game)
-        size = sum(swarm["size"] for swarm in swarms)
-        values = (str(run), scenario, conditions[index], game.get("n", size), game.get("run_seed", 0))
+        n = game["n"] if "n" in game else sum(swarm["size"] for swarm in swarms)
+        values = (str(run), scenario, conditions[index], n, game.get("run_seed", 0))
         key = dict(zip(_KEY_COLUMNS, values, strict=True))
         runs += [key | swarm for swarm in swarms]
         policies += [key | row for row in (models[index].policy_results() if models else ())]
-    table = _make_table(runs, "runs")
-    if table.duplicated(["condition", "n", "seed", "swarm"]).any():
+    if pd.DataFrame(runs, columns=["condition", "n", "seed", "swarm"]).astype(str).duplicated().any():
         raise InputError(
             "by", by, "must distinguish all games: two games have the same condition, N and seed"
         )
+    table = _make_table(runs, "runs")
     return table, _make_table(policies, "policies") if policies else None
 
 
-def _items(source: Sweep) -> list[Any]:
+def _items(source: Any) -> list[Any]:
+    """Return rows of games or models; `InputError` if `source` is anything else."""
     if isinstance(source, pd.DataFrame):
         return source.to_dict("records")
-    return list(source) if isinstance(source, Iterable) else [source]
+    items = list(source) if isinstance(source, Iterable) and not isinstance(source, Mapping) else [source]
+    for item in items:
+        if not isinstance(item, Mapping) and not hasattr(item, "policy_results"):
+            rule = "must be a directory, rows of mesa.batch_run, or models whose games have ended"
+            raise InputError("source", type(item).__name__, rule)
+    return items
 
 
 def _end_of_game(model: PlayedModel) -> dict[str, Any]:
@@ -94,6 +100,9 @@ def _swarms(game: Mapping[str, Any]) -> list[dict[str, Any]]:
     # A data frame has NaN for swarms that this game lacks.
     while pd.notna(game.get(f"pucks_{len(swarms) + 1}")):
         k = len(swarms) + 1
+        absent = [f"{name}_{k}" for name in _SWARM_COLUMNS if f"{name}_{k}" not in game]
+        if absent:
+            raise InputError("source", absent, "must have these model reporters too")
         swarms.append({"swarm": k} | {name: game[f"{name}_{k}"] for name in _SWARM_COLUMNS} | of_game)
     return swarms
 
@@ -111,10 +120,8 @@ def _text(value: Any) -> str:
     """Return a parameter as text: the name of a class or function, the elements of a list."""
     if isinstance(value, list | tuple):
         return ",".join(map(_text, value))
-    return str(getattr(value, "__name__", value))
+    return " ".join(str(getattr(value, "__name__", value)).split())
 
 
 def _make_table(rows: Sequence[Mapping[str, Any]], table: str) -> pd.DataFrame:
-    columns, integers = column_names(table), column_names(table, "integer")
-    frame = pd.DataFrame(rows, columns=columns).astype(dict.fromkeys(integers, "int64"))
-    return check_columns(frame, table, columns)
+    return check_frame(pd.DataFrame(rows, columns=list(column_names(table))), table)

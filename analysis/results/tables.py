@@ -1,20 +1,16 @@
-"""Reading and checking the Parquet tables of a results directory against the schema of columns."""
+"""Reading and checking tables of results as data frames, against the schema of columns."""
 
-from collections.abc import Collection, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Collection, Sequence
+from contextlib import suppress
 from pathlib import Path
-from typing import Final
+from typing import Any
 
 import pandas as pd
-import pyarrow.parquet as pq
-from pandas.api.types import is_numeric_dtype
 
-from kswarms.agents.common.columns import TABLES, column_names
+from kswarms.agents.common.columns import TABLES
 from kswarms.agents.common.errors import InputError
-
-# Errors of Arrow and pandas for damaged files.
-_FILE_ERRORS: Final = (OSError, ValueError, LookupError, TypeError, RuntimeError)
-_NAN_ALLOWED: Final = {"reward", "q", "time_sud", "time_sud_without"}
+from kswarms.agents.common.tables import arrow_table, check_table, read_metadata
+from kswarms.agents.common.tables import read_table as read_arrow_table
 
 
 def read_table(
@@ -23,55 +19,64 @@ def read_table(
     """Read a table of a results directory and check it against the schema.
 
     By default all runs and all columns are read, including columns that the schema lacks. Columns of the
-    schema have its types: text is str, numbers are numeric.
+    schema have its types: str, int64, float64, bool.
 
     Raises
     ------
     InputError
-        The directory or the file is missing or unreadable; or a column is missing, has missing values or has
-        a wrong type.
+        The directory or the file is missing or unreadable; or as in `check_table`.
     """
     if not directory.is_dir():
         raise InputError("results", str(directory), "must be a directory that `kswarms run` wrote")
     path = directory / f"{table}.parquet"
     if not path.is_file():
         raise InputError("results", str(directory), f"must be a directory that holds {path.name}")
-    required = column_names(table) if columns is None else columns
-    with _readable(path):
-        present = pq.read_schema(path).names
-    missing = [name for name in required if name not in present]
-    if missing:
-        raise InputError("results", str(path), f"must have the missing columns {', '.join(missing)}")
-    filters = None if runs is None else [("run", "in", set(runs))]
-    with _readable(path):
-        found = pq.read_table(path, columns=columns and list(columns), filters=filters)
-        rows: pd.DataFrame = found.to_pandas()
-    return check_columns(rows, table, required)
+    return to_frame(read_arrow_table(path, table, columns, runs), table)
 
 
-def check_columns(rows: pd.DataFrame, table: str, required: Sequence[str]) -> pd.DataFrame:
-    """Return rows with the types of the schema; `InputError` for missing values and wrong types."""
-    for name, kind, *_ in TABLES[table]:
-        if name not in required:
-            continue
-        field = f"{table}.parquet column {name}"
-        if name not in _NAN_ALLOWED and rows[name].isna().any():
-            raise InputError(field, None, "must be given in every row")
-        if kind in ("integer", "real") and not is_numeric_dtype(rows[name]):
-            raise InputError(field, str(rows[name].dtype), "must be a column of numbers")
-    return rows.astype({name: str for name in column_names(table, "text") if name in required})
+def check_frame(rows: Any, table: str, required: Collection[str] | None = None) -> pd.DataFrame:
+    """Check a data frame against the schema; return it with the types of the schema.
+
+    `required` are the columns that must be present, by default all of the schema. `InputError` as in
+    `kswarms.agents.common.tables.check_table`.
+    """
+    require_columns(rows, table, [])
+    names = [column.name for column in TABLES[table] if column.name in rows.columns]
+    for name in names:
+        if list(rows.columns).count(name) > 1:
+            raise InputError(table, name, "must have one column of this name")
+    checked = check_table(arrow_table({name: rows[name] for name in names}, table), table, table, required)
+    types = {column.name: column.kind for column in TABLES[table]}
+    flat = [name for name in names if types[name] in ("text", "integer", "real", "boolean")]
+    frame = to_frame(checked.select(flat), table).set_axis(rows.index)
+    checked_rows: pd.DataFrame = rows.assign(**{name: frame[name] for name in flat})
+    return checked_rows
+
+
+def require_columns(rows: Any, table: str, required: Sequence[str]) -> None:
+    """Raise an `InputError` unless `rows` is a data frame with the required columns."""
+    if not isinstance(rows, pd.DataFrame):
+        raise InputError(table, type(rows).__name__, "must be a pandas.DataFrame")
+    absent = [name for name in required if name not in rows]
+    if absent:
+        raise InputError(table, absent, "must have these columns too")
+
+
+def rows_where(rows: Any, table: str, column: str, values: Collection[str]) -> pd.DataFrame:
+    """Return the rows of a data frame with some values in a column, checked by `check_frame`."""
+    if isinstance(rows, pd.DataFrame) and list(rows.columns).count(column) == 1:
+        with suppress(TypeError):  # values that cannot be compared fail the check
+            rows = rows[rows[column].isin(list(values))]
+    return check_frame(rows, table)
+
+
+def to_frame(found: Any, table: str) -> pd.DataFrame:
+    """Return a checked Arrow table as a data frame; texts are str."""
+    rows: pd.DataFrame = found.to_pandas()
+    texts = {column.name: str for column in TABLES[table] if column.kind == "text" and column.name in rows}
+    return rows.astype(texts)
 
 
 def count_rows(path: Path) -> int:
     """Return the number of rows of a Parquet file; `InputError` if it cannot be read."""
-    with _readable(path):
-        return int(pq.read_metadata(path).num_rows)
-
-
-@contextmanager
-def _readable(path: Path) -> Iterator[None]:
-    """Re-raise the errors of a damaged file as `InputError`."""
-    try:
-        yield
-    except _FILE_ERRORS as error:
-        raise InputError("results", str(path), "must be a readable Parquet file") from error
+    return int(read_metadata(path).num_rows)

@@ -12,6 +12,7 @@ import pandas as pd
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.theory.times import share_of_time
 from kswarms.analysis.results.published import argos_fixed_policies
+from kswarms.analysis.results.tables import require_columns
 from kswarms.analysis.statistics.comparisons import compare_independent
 from kswarms.analysis.text_tables import MISSING, TextTable, with_interval
 
@@ -42,6 +43,7 @@ def compare_with_argos(runs: pd.DataFrame) -> pd.DataFrame:
         * `score_fits`, `share_fits` (bool): whether scores and shares agree.
     """
     theirs = _argos_games()
+    require_columns(runs, "runs", [*_ROW, "pucks", "t_a_intra", "t_a_inter", "t_p"])
     by_swarm = dict(list(theirs.groupby(_ROW)))
     rows = [
         dict(zip(_ROW, key, strict=True)) | _compare(games, by_swarm[key])

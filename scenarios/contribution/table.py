@@ -1,5 +1,6 @@
 """The table of contributions: ``contribution.parquet`` in a results directory."""
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
@@ -11,8 +12,8 @@ import pyarrow.parquet as pq
 from kswarms.agents.common.atomic_files import atomic_path, remove_temporary_files
 from kswarms.agents.common.columns import TABLES
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.tables import arrow_schema, read_table
 from kswarms.scenarios.study.directory import CONTRIBUTIONS_FILE, make_directory
-from kswarms.scenarios.study.parquet import arrow_schema
 
 FILE: Final = CONTRIBUTIONS_FILE
 SCHEMA: Final = arrow_schema(TABLES["contribution"])
@@ -27,12 +28,8 @@ def prepare_table(directory: Path) -> None:
     """
     make_directory(directory, FILE)
     path = directory / FILE
-    try:
-        valid = not path.exists() or pq.read_schema(path).equals(SCHEMA)
-    except (OSError, pa.ArrowException):
-        valid = False
-    if not valid:
-        raise InputError("out", str(directory), f"has a {FILE} that is no table of kswarms")
+    if os.path.lexists(path) and _read(path, "out").column_names != SCHEMA.names:
+        raise InputError("out", str(path), "must have the columns of a table of contributions only")
     remove_temporary_files(directory)
 
 
@@ -44,7 +41,7 @@ def write_table(directory: Path, rows: Sequence[dict[str, Any]]) -> Path:
     path = directory / FILE
     table = pa.Table.from_pylist(list(rows), schema=SCHEMA)
     if path.exists():
-        earlier = pq.read_table(path, schema=SCHEMA)
+        earlier = _read(path, "out")
         replaced = pa.array([True] * len(earlier))
         for name in _KEY:
             replaced = pc.and_(replaced, pc.equal(earlier[name], rows[0][name]))
@@ -60,9 +57,11 @@ def find_row(directory: Path, run: str) -> dict[str, Any] | None:
     path = directory / FILE
     if not path.is_file():
         return None
-    try:
-        table = pq.read_table(path, schema=SCHEMA)
-    except (OSError, ValueError) as error:  # every error of pyarrow is one of these
-        raise InputError("results", str(directory), f"has a {FILE} that cannot be read") from error
-    rows: list[dict[str, Any]] = table.to_pylist()
+    rows: list[dict[str, Any]] = _read(path, "results").to_pylist()
     return next((row for row in rows if run in (row["run"], row["run_without"])), None)
+
+
+def _read(path: Path, field: str) -> pa.Table:
+    """Return the table with the types of the schema; `InputError` about `field` if it is damaged."""
+    table = read_table(path, "contribution", field=field)
+    return table.cast(SCHEMA) if table.column_names == SCHEMA.names else table

@@ -1,20 +1,18 @@
 """One curve of a scenario: a game without its seed and its number of robots."""
 
 import math
-from typing import Any, Final
+from typing import Any
 
 from pydantic import Field, field_validator
 
 from kswarms.agents.body import BODIES
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.limits import LONGEST_NAME
+from kswarms.agents.common.limits import LONGEST_NAME, ONE_LINE
 from kswarms.agents.policies.spec import parse_policies
 from kswarms.model.description.fields import GameFields, SwarmFields
 from kswarms.model.description.game import Game, Swarm, apportion
 from kswarms.model.description.parameters import text_of
 
-ONE_LINE: Final = r"^[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]*$"
-"""Pattern of a text without line breaks, control characters and changes of the writing direction."""
 Value = bool | int | float | str
 """Value of a field in a grid."""
 

@@ -12,9 +12,9 @@ from pydantic import Field, model_validator
 
 from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.limits import LONGEST_NAME, LONGEST_TITLE, MAX_SEEDS
+from kswarms.agents.common.limits import LONGEST_NAME, LONGEST_TITLE, MAX_SEEDS, ONE_LINE
 from kswarms.model.description.game import Game
-from kswarms.scenarios.description.condition import ONE_LINE, Condition, Value
+from kswarms.scenarios.description.condition import Condition, Value
 from kswarms.scenarios.description.grid import collapse_grid, expand_grid
 
 DENSITIES: Final = (6, 10, 16, 20, 26, 30, 36, 40, 46, 50)

@@ -1,6 +1,6 @@
 """The tables of a study as Parquet files; `kswarms.agents.common.columns` describes their columns."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from itertools import islice
 from pathlib import Path
 from typing import Any, Final
@@ -8,7 +8,8 @@ from typing import Any, Final
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from kswarms.agents.common.columns import ARM, RECORDED_TABLES, SCHEMA_VERSION, TABLES, Column, column_names
+from kswarms.agents.common.columns import RECORDED_TABLES, TABLES, Column, column_names
+from kswarms.agents.common.tables import arrow_schema
 from kswarms.scenarios.study.ledger import Ledger, Point
 from kswarms.scenarios.study.mixtures import Curve
 
@@ -18,23 +19,8 @@ _POINTS_PER_PART: Final = 1000
 _ROWS_PER_GROUP: Final = 100_000
 """Minimum number of rows of a row group, which limits the memory of an export."""
 
-_KINDS: Final = {"text": pa.string(), "integer": pa.int64(), "real": pa.float64(), "boolean": pa.bool_()}
 _GRID_KINDS: Final[dict[str, set[type]]] = {"boolean": {bool}, "integer": {int}, "real": {int, float}}
 """Python types of grid values that fit each kind of column; any value fits a column of text."""
-
-
-def arrow_schema(columns: Iterable[Column]) -> pa.Schema:
-    """Return columns as an Arrow schema, with the version of the columns in its metadata."""
-    fields = {column.name: _arrow_type(column.kind) for column in columns}
-    return pa.schema(fields, metadata={"kswarms_schema": str(SCHEMA_VERSION)})
-
-
-def _arrow_type(kind: str) -> pa.DataType:
-    if kind.startswith("list of "):
-        return pa.list_(_arrow_type(kind.removeprefix("list of ")))
-    if kind == "arm":
-        return pa.struct({column.name: _arrow_type(column.kind) for column in ARM})
-    return _KINDS[kind]
 
 
 def pack(records: Mapping[str, Mapping[str, list[Any]]]) -> dict[str, bytes]:

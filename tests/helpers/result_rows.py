@@ -66,7 +66,7 @@ def learning_conflicts() -> pd.DataFrame:
         late = {"action": "fight", "q": second / 10} if second >= 10 else {"q": 0.1}
         rows.append(conflict(2, 0, second, phase="learning", **late))
         rows.append(conflict(3, 1, second, phase="learning", q=0.5))
-    rows.append(conflict(3, 2, 5.0, phase="learning", action="fight"))  # S2 has no bandit for it
+    rows.append(conflict(3, 2, 5.5, phase="learning", action="fight"))  # S2 has no bandit for it
     rows.append(conflict(2, 0, 25.0))  # the measured game
     return pd.DataFrame(rows)
 
@@ -76,6 +76,6 @@ PLACED = pd.DataFrame(
         conflict(0, 2, 0, x=-0.99, y=-0.99),
         conflict(0, 2, 1, x=-0.99, y=-0.99, action="fight"),
         conflict(0, 2, 2, x=0.99, y=-0.99, run="b"),
-        conflict(0, 2, 2, x=0.99, y=0.42, run="b"),
+        conflict(0, 2, 3, x=0.99, y=0.42, run="b"),
     ]
 )

@@ -143,15 +143,15 @@ def test_a_compared_run_of_an_unknown_scenario_is_refused() -> None:
     row = {"run": digest(game, 0), "run_without": "0123", "seed": 0, "robot": 0, "n": 6}
     labels = (("mine", ""), ("fig-6.1c", "other"), ("fig-6.1c", ""))
     for (scenario, condition), name in zip(labels, (row["run"], row["run"], "0123"), strict=True):
-        whole = {field.name: None for field in SCHEMA} | row | {"scenario": scenario, "condition": condition}
-        whole["absent_from"] = "game"
+        other = {field.name: "" if field.type == pa.string() else 1 for field in SCHEMA}
+        whole = other | row | {"scenario": scenario, "condition": condition, "absent_from": "game"}
         pq.write_table(pa.Table.from_pylist([whole], schema=SCHEMA), "contribution.parquet")
         with pytest.raises(InputError, match=f"run='{name}': must be a run of this version of kswarms"):
             recorded_run(Path(), str(name))
         with pytest.raises(InputError, match="must be a directory with a ledger"):
             recorded_run(Path(), "4567")
     Path("contribution.parquet").write_text("no table")
-    with pytest.raises(InputError, match=r"has a contribution[.]parquet that cannot be read"):
+    with pytest.raises(InputError, match=r"contribution[.]parquet': must be a readable Parquet file"):
         recorded_run(Path(), "0123")
 
 

@@ -54,10 +54,10 @@ def test_settings_of_a_user_neither_change_a_figure_nor_are_changed(draw: Callab
         assert dict(mpl.rcParams) == before
 
 
-@pytest.mark.parametrize("name", [r"$\frac$", "$", "a_b^c {", "\\n", "%", "\u202e\x1b", "x" * 5000])
+@pytest.mark.parametrize("name", [r"$\frac$", "$", "a_b^c {", "\\n", "%", "x" * 5000])
 def test_any_name_can_be_drawn(name: str) -> None:
     runs = runs_of(name, swarms=(2,), densities=[6], seeds=1, conditions=[name, "b"])
-    assert encode(figure_of(runs, name, f"{name}\ud800"), "svg")
+    assert encode(figure_of(runs, name, f"{name}\u202e\x1b\ud800"), "svg")
 
 
 def test_a_text_of_a_figure_is_one_line_of_limited_length() -> None:

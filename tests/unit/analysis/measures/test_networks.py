@@ -93,7 +93,7 @@ def test_separate_jams_are_counted_separately() -> None:
 
 
 def test_jams_refuse_invalid_arguments() -> None:
-    with pytest.raises(InputError, match="every=0: must be above 0"):
+    with pytest.raises(InputError, match="every=0: must be a number above 0"):
         jams(MET, every=0)
     with pytest.raises(InputError, match="must hold at least one conflict"):
         jams(MET.head(0))

@@ -82,12 +82,13 @@ def test_a_missing_value_is_refused(tmp_path: Path, runs: pd.DataFrame, name: st
 
 def test_numbers_written_as_text_are_refused(tmp_path: Path, runs: pd.DataFrame) -> None:
     runs.astype({"pucks": str}).to_parquet(tmp_path / "runs.parquet")
-    with pytest.raises(InputError, match=r"column pucks=.*must be a column of numbers"):
+    with pytest.raises(InputError, match=r"column pucks=.*must be a column of integers"):
         read_runs(tmp_path)
 
 
 def test_policies_are_checked_against_their_own_columns(tmp_path: Path) -> None:
-    policies = pd.DataFrame({name: [0.5, 1.0] for name in POLICIES_NUMBERS})
+    policies = pd.DataFrame({name: [1.0, 2.0] for name in POLICIES_NUMBERS})
+    policies = policies.assign(share=0.5, attack_share=[0.5, 1.0])
     policies = policies.assign(**{name: ["a", ""] for name in POLICIES_TEXT})
     policies.to_parquet(tmp_path / "policies.parquet")
     assert list(read_policies(tmp_path)["attack_share"]) == [0.5, 1.0]

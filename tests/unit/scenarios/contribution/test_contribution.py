@@ -127,12 +127,13 @@ def test_the_number_of_workers_does_not_change_the_result() -> None:
 def rows(**changes: Any) -> list[dict[str, Any]]:
     values = {"string": "x", "int64": 1, "double": 0.5}
     plain: dict[str, Any] = {name: values[str(SCHEMA.field(name).type)] for name in SCHEMA.names}
+    plain["absent_from"] = "game"
     return [{**plain, "robot": robot, **changes} for robot in (2, 0)]
 
 
 def test_a_table_keeps_the_rows_of_other_games(tmp_path: Path) -> None:
     prepare_table(tmp_path)
-    for part in (rows(), rows(n=26), rows(absent_from="y"), rows(seed=7)):
+    for part in (rows(), rows(n=26), rows(absent_from="learning"), rows(seed=7)):
         prepare_table(tmp_path)
         path = write_table(tmp_path, part)
     assert path == tmp_path / FILE
@@ -141,7 +142,8 @@ def test_a_table_keeps_the_rows_of_other_games(tmp_path: Path) -> None:
     assert table.schema.equals(SCHEMA)
     found = [(row["absent_from"], row["n"], row["seed"], row["robot"]) for row in table.to_pylist()]
     # The last part has replaced the first.
-    assert found == [(*game, robot) for game in (("x", 1, 7), ("x", 26, 1), ("y", 1, 1)) for robot in (0, 2)]
+    games = (("game", 1, 7), ("game", 26, 1), ("learning", 1, 1))
+    assert found == [(*game, robot) for game in games for robot in (0, 2)]
 
 
 def test_temporary_files_of_killed_processes_are_removed(tmp_path: Path) -> None:
@@ -152,10 +154,16 @@ def test_temporary_files_of_killed_processes_are_removed(tmp_path: Path) -> None
 
 def test_a_foreign_file_is_refused_and_kept(tmp_path: Path) -> None:
     pq.write_table(pa.table({"mine": [1]}), tmp_path / FILE)
-    for content in (b"mine", (tmp_path / FILE).read_bytes()):
+    contents = {b"mine": "must be a readable Parquet file", (tmp_path / FILE).read_bytes(): "missing columns"}
+    (tmp_path / FILE).unlink()
+    write_table(tmp_path, rows())
+    extended = pq.read_table(tmp_path / FILE).append_column("mine", [[1, 2]])
+    pq.write_table(extended, tmp_path / FILE)
+    contents[(tmp_path / FILE).read_bytes()] = "must have the columns of a table of contributions only"
+    for content, message in contents.items():
         (tmp_path / FILE).write_bytes(content)
         before = (tmp_path / FILE).read_bytes()
-        with pytest.raises(InputError, match=r"has a contribution\.parquet that is no table of kswarms"):
+        with pytest.raises(InputError, match=message):
             prepare_table(tmp_path)
         assert (tmp_path / FILE).read_bytes() == before
 

@@ -85,7 +85,7 @@ def test_a_main_file_of_another_program_is_refused_and_unchanged(
     (key.parent / "out" / "lock").write_text("precious")
     (key.parent / "out" / "calibration.json").write_text("precious")
     before = snapshot(key.parent)
-    with pytest.raises(InputError, match=r"must be a ledger of kswarms|no table of kswarms|no file of a fit"):
+    with pytest.raises(InputError, match=r"a ledger of kswarms|readable Parquet file|no file of a fit"):
         enter(key.parent / "out")
     assert snapshot(key.parent) == before
 

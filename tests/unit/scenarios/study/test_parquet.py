@@ -11,13 +11,14 @@ import pyarrow.parquet as pq
 import pytest
 
 from kswarms.agents.common.columns import SCHEMA_VERSION, TABLES, column_names
+from kswarms.agents.common.tables import arrow_schema
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.runs.outcome import Failure, Outcome
 from kswarms.scenarios.runs.run import Run, expand
 from kswarms.scenarios.study import parquet
 from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.ledger import Curve, Ledger
-from kswarms.scenarios.study.parquet import arrow_schema, export, pack
+from kswarms.scenarios.study.parquet import export, pack
 
 ARM = {"opponent": 1, "action": "flight", "reward": 2.5, "time": 10.0, "count": 4.0, "q": 0.25}
 VALUES: dict[str, Any] = {"integer": 1, "real": 0.5, "text": "x"}
