@@ -29,6 +29,8 @@ COMMANDS: Final = {
     "show": ("catalogue", "show", "Print a scenario as TOML, ready to edit."),
     "run": ("run", "run", "Play scenarios; write tables and figures."),
     "status": ("status", "status", "Show finished and failed runs, with errors."),
+    "export": ("export", "export", "Write the tables of a study again, without playing."),
+    "merge": ("export", "merge", "Merge studies, such as shards, into one."),
     "replay": ("status", "replay", "Play one run again and compare the results."),
     "calibrate": ("calibrate", "calibrate", "Fit the free parameters to Table 6.1."),
     "explore": ("explore", "explore", "Open a page to watch and change games."),

@@ -16,6 +16,9 @@ CPUS: Final = os.cpu_count() or 1
 Jobs = Annotated[
     int, typer.Option(min=1, max=MAX_JOBS, show_default="one for each CPU", help="Worker processes.")
 ]
+AllowMixed = Annotated[
+    bool, typer.Option("--allow-mixed", help="Mix runs of different versions of Python, numpy and numba.")
+]
 FirstSeed = Annotated[int, typer.Option(min=0, max=MAX_SEED, help="First seed.")]
 
 

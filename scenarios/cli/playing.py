@@ -12,6 +12,7 @@ from kswarms.scenarios.cli.printing import warn
 from kswarms.scenarios.cli.progress import ProgressStyle, show_progress
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.runs.dask import dask_executor
+from kswarms.scenarios.runs.run import Order
 from kswarms.scenarios.runs.trial import require_trials
 from kswarms.scenarios.study.file_systems import network_file_system
 from kswarms.scenarios.study.study import Study
@@ -23,8 +24,11 @@ class Plan:
 
     scenarios: Sequence[Scenario]
     first_seed: int
+    shard: tuple[int, int]
+    """Number of the part that is played, and number of parts."""
     records: Sequence[str]
     """Names of the recorded tables."""
+    order: Order
     jobs: int
     """Number of worker processes."""
     scheduler: str | None
@@ -44,11 +48,12 @@ def play_study(out: Path, plan: Plan, command: str, progress: ProgressStyle) -> 
         warn(f"{out} is on a network file system ({kind}), which can damage a ledger; {advice}")
     try:
         with _executor(plan) as (executor, workers), Study(out, command, plan.allow_mixed) as study:
-            runs = study.plan(plan.scenarios, plan.first_seed, plan.records)
+            runs = study.plan(plan.scenarios, plan.first_seed, plan.records, plan.shard)
             for origin in study.other_origins:
                 warn(f"{out} has runs of other code, {origin}; use another --out to play them again")
             playing = True
-            with closing(study.play(runs, workers, plan.records, executor, plan.run_limit)) as played:
+            results = study.play(runs, workers, plan.records, executor, plan.run_limit, plan.order)
+            with closing(results) as played:
                 for count in show_progress(played, runs, progress):
                     failed = count.failed
     except KeyboardInterrupt:

@@ -1,5 +1,6 @@
 """``run``: play scenarios, write tables of their results and draw figures."""
 
+import re
 import shlex
 from pathlib import Path
 from typing import Annotated
@@ -12,10 +13,11 @@ from kswarms.agents.common.limits import MAX_RUN_LIMIT
 from kswarms.agents.common.quoting import for_shell
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selection import select_scenarios, with_densities_and_seeds
-from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, complete_ids, parse_path
+from kswarms.scenarios.cli.options import CPUS, AllowMixed, FirstSeed, Jobs, complete_ids, parse_path
 from kswarms.scenarios.cli.printing import print_line, print_table, warn
 from kswarms.scenarios.cli.progress import ProgressStyle
 from kswarms.scenarios.description.text import parse_integers, split_words
+from kswarms.scenarios.runs.run import Order
 
 
 def run(
@@ -62,10 +64,13 @@ def run(
     record: Annotated[
         str, typer.Option(metavar="NAME,...", help=f"Additional tables: {', '.join(RECORDED_TABLES)}.")
     ] = "",
-    allow_mixed: Annotated[
-        bool,
-        typer.Option("--allow-mixed", help="Mix runs of different versions of Python, numpy and numba."),
-    ] = False,
+    order: Annotated[
+        Order, typer.Option(help="Play the longest runs first, or all runs of the first seed.")
+    ] = "longest",
+    shard: Annotated[
+        str, typer.Option(metavar="K/M", help="Play part K of M parts, each into its own DIR: see `merge`.")
+    ] = "1/1",
+    allow_mixed: AllowMixed = False,
     no_figures: Annotated[bool, typer.Option("--no-figures", help="Do not draw figures.")] = False,
     progress: Annotated[ProgressStyle, typer.Option(help="How progress is shown.")] = "bar",
     quiet: Annotated[bool, typer.Option("--quiet", help="Print errors only.")] = False,
@@ -98,7 +103,10 @@ def run(
 
     from kswarms.scenarios.cli.playing import Plan, play_study
 
-    plan = Plan(scenarios, first_seed, tuple(records), jobs, scheduler, run_limit, allow_mixed)
+    part = _parse_shard(shard)
+    plan = Plan(
+        scenarios, first_seed, part, records, order, jobs, scheduler, run_limit, allow_mixed
+    )
     command = shlex.join(context.obj)
     tables, failed = play_study(out, plan, command, "none" if quiet else progress)
     lines = [f"table:  {table}" for table in tables]
@@ -119,6 +127,15 @@ def run(
         else:
             print_line(f"next:   kswarms report {directory}  (all results in one HTML file)")
     return 1 if failed else 0
+
+
+def _parse_shard(text: str) -> tuple[int, int]:
+    """Return number of a part and number of parts."""
+    if match := re.fullmatch(r"(\d{1,6})/(\d{1,6})", text, re.ASCII):
+        part, parts = int(match[1]), int(match[2])
+        if 1 <= part <= parts:
+            return part, parts
+    raise InputError("shard", text, "must be K/M, part K of M parts, such as 3/16")
 
 
 def _print_table(table_id: str, out: Path) -> None:

@@ -21,6 +21,8 @@ DENSITIES: Final = (6, 10, 16, 20, 26, 30, 36, 40, 46, 50)
 """Default numbers of robots (section 3.1)."""
 SEEDS: Final = 20
 """Default number of games per density (section 3.1)."""
+ID_PATTERN: Final = r"^[a-z0-9][a-z0-9.-]*$"
+"""Pattern of the ids of scenarios, which also become names of files."""
 LEARNING: Final = 3000.0
 """Duration of the learning phase of learners in the source (s, section 3.1)."""
 
@@ -45,7 +47,7 @@ class Scenario(FrozenModel):
         a condition for each combination of values, which `Condition.grid_values` returns.
     """
 
-    id: str = Field(pattern=r"^[a-z0-9][a-z0-9.-]*$", max_length=LONGEST_NAME)
+    id: str = Field(pattern=ID_PATTERN, max_length=LONGEST_NAME)
     title: str = Field(min_length=1, max_length=LONGEST_TITLE, pattern=ONE_LINE)
     conditions: tuple[Condition, ...] = Field(min_length=1)
     densities: tuple[int, ...] = Field(default=DENSITIES, min_length=1)

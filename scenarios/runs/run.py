@@ -1,12 +1,12 @@
 """A run (a game with a seed), its digest, and the runs of scenarios."""
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from hashlib import file_digest, sha256
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal
 
 from kswarms import __version__
 from kswarms.agents.common.errors import InputError
@@ -20,6 +20,10 @@ _ROBOT_SECOND: Final = 5e-6
 """CPU time per robot and second of play, at a control period of 0.1 s (s)."""
 _ROBOT_SECONDS_PER_PUCK: Final = 300.0
 """Play per puck, in games that end at a number of pucks (robot-seconds)."""
+
+
+Order = Literal["longest", "seeds"]
+"""Order of play: the longest runs first, or all runs of the first seed first."""
 
 
 @dataclass(frozen=True)
@@ -143,3 +147,18 @@ def expand(scenarios: Iterable[Scenario], first_seed: int = 0) -> list[Run]:
                     labels = runs[run_digest].labels if run_digest in runs else ()
                     runs[run_digest] = Run(run_digest, game, seed, (*labels, label))
     return list(runs.values())
+
+
+def sort_runs(runs: Iterable[Run], order: Order) -> list[Run]:
+    """Sort runs in the order of play: the longest first, of all runs or of each seed."""
+    return sorted(runs, key=lambda run: (run.seed if order == "seeds" else 0, -run.effort))
+
+
+def select_shard(runs: Sequence[Run], part: int, parts: int) -> list[Run]:
+    """Return one of several parts of runs, whose efforts are about equal; `part` counts from 1.
+
+    Each run is in one part. The parts depend on the runs alone, not on what has been played.
+    """
+    dealt = sorted(runs, key=lambda run: (-run.effort, run.digest))[part - 1 :: parts]
+    chosen = {run.digest for run in dealt}
+    return [run for run in runs if run.digest in chosen]

@@ -11,7 +11,7 @@ from kswarms.scenarios.runs.executor import play_through
 from kswarms.scenarios.runs.outcome import Failure, Outcome, Result
 from kswarms.scenarios.runs.play import attempt, attempt_in_worker
 from kswarms.scenarios.runs.processes import play_in_processes
-from kswarms.scenarios.runs.run import Run, code_version
+from kswarms.scenarios.runs.run import Order, Run, code_version, sort_runs
 from kswarms.scenarios.runs.trial import failed_trials
 
 
@@ -21,6 +21,7 @@ def sweep(
     record: str = "",
     executor: Executor | None = None,
     run_limit: float | None = None,
+    order: Order = "longest",
 ) -> Generator[Result, None, None]:
     """Play runs like `play_all`, but yield failures instead of raising them, and the CPU time (s)."""
     with_user_code = [run for run in runs if run.game.runs_user_code]
@@ -29,7 +30,7 @@ def sweep(
         if run.game in failed:
             yield run, failed[run.game], 0.0
     playable = runs if not failed else [run for run in runs if run.game not in failed]
-    waiting = deque(sorted(playable, key=lambda run: run.effort, reverse=True))
+    waiting = deque(sort_runs(playable, order))
     if executor is not None:
         no_workers = RunError("all workers exited before the sweep finished")
         task = partial(attempt_in_worker, record, code_version(), None)

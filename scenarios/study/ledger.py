@@ -6,8 +6,9 @@ points in the curves are rows of another table. Only one process writes. Each re
 
 import json
 from collections.abc import Iterable, Iterator, Sequence
+from hashlib import sha256
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import Any, Final, NamedTuple, Self
 
 from kswarms import __version__
 from kswarms.agents.common.errors import InputError
@@ -16,6 +17,31 @@ from kswarms.scenarios.runs.outcome import Failure, Outcome, environment
 from kswarms.scenarios.runs.run import Run, code_version, digest
 from kswarms.scenarios.study.database import open_database, os_errors
 from kswarms.scenarios.study.mixtures import Contents, Curve, refuse_mixtures
+
+_MERGE: Final = (
+    ("INSERT OR REPLACE INTO scenarios VALUES (?, ?)", "SELECT id, toml FROM scenarios"),
+    ("INSERT OR IGNORE INTO curves VALUES (?, ?, ?)", "SELECT scenario, condition, description FROM curves"),
+    ("INSERT OR IGNORE INTO games (description) VALUES (?)", "SELECT description FROM games"),
+    (
+        "INSERT INTO runs SELECT ?, id, ?, ?, ?, ?, ?, ?, ?, ?, ?, ? FROM games WHERE description = ?"
+        " ON CONFLICT (run) DO UPDATE SET status = excluded.status, code = excluded.code,"
+        " environment = excluded.environment, seconds = excluded.seconds, swarms = excluded.swarms,"
+        " policies = excluded.policies, error = excluded.error, traceback = excluded.traceback"
+        " WHERE runs.status != 'done' AND excluded.status != 'missing'",
+        "SELECT run, seed, version, status, code, environment, seconds, swarms, policies, error, traceback,"
+        " description FROM runs JOIN games ON game = id",
+    ),
+    (
+        "INSERT OR IGNORE INTO points VALUES (?, ?, ?, ?, ?)",
+        "SELECT scenario, condition, n, seed, run FROM points",
+    ),
+    ("INSERT OR IGNORE INTO records VALUES (?, ?, ?)", "SELECT run, name, rows FROM records"),
+    (
+        "INSERT INTO sessions (about) SELECT ?1 WHERE ?1 NOT IN (SELECT about FROM sessions)",
+        "SELECT about FROM sessions ORDER BY id",
+    ),
+)
+"""Statements that merge a ledger: each inserts the rows that the other selects."""
 
 
 class Point(NamedTuple):
@@ -43,6 +69,10 @@ class Ledger:
         return self
 
     def __exit__(self, *_error: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file."""
         self._db.close()
 
     def _query(self, sql: str, *values: object) -> Iterator[Any]:
@@ -53,7 +83,7 @@ class Ledger:
     def _parse_json(self, text: str) -> Any:
         try:
             return json.loads(text)
-        except ValueError as error:
+        except (ValueError, TypeError, RecursionError) as error:
             raise OSError(f"{self.path}: is damaged ({error})") from error
 
     def plan(
@@ -131,11 +161,30 @@ class Ledger:
                 ((run.digest, name, table) for name, table in records.items()),
             )
 
+    def check(self) -> None:
+        """Read the whole file; raise an `OSError` if it is damaged."""
+        for found in ("quick_check(1)", "foreign_key_check"):
+            for row in self._query(f"PRAGMA {found}"):
+                if row != ("ok",):
+                    raise OSError(f"{self.path}: is damaged ({' '.join(map(str, row))})")
+
+    def result_digests(self) -> Iterator[tuple[str, bytes]]:
+        """Yield each finished run with a hash of its results."""
+        for run, *rows in self._query("SELECT run, swarms, policies FROM runs WHERE status = 'done'"):
+            yield run, sha256(repr(rows).encode()).digest()
+
+    def merge(self, others: Iterable[Self]) -> None:
+        """Add the content of other ledgers of this format; finished runs are kept. Nothing is checked."""
+        with os_errors(self.path), self._db:
+            for other in others:
+                for insert, select in _MERGE:
+                    self._db.executemany(insert, other._query(select))
+
     def results(self, name: str) -> Iterator[tuple[Point, list[dict[str, Any]]]]:
         """Yield the finished points with rows ``swarms`` or ``policies``, ordered by curve, `n` and seed."""
         for *point, rows in self._query(
             f"SELECT run, scenario, condition, n, points.seed, {name} FROM points JOIN runs USING (run)"
-            f" WHERE status = 'done' AND {name} != '[]' ORDER BY scenario, condition, n, points.seed"
+            f" WHERE status = 'done' AND {name} IS NOT '[]' ORDER BY scenario, condition, n, points.seed"
         ):
             yield Point(*point), self._parse_json(rows)
 
@@ -190,7 +239,11 @@ class Ledger:
 
     def sessions(self) -> list[dict[str, Any]]:
         """Return the descriptions of all sessions, in order."""
-        return [self._parse_json(about) for (about,) in self._query("SELECT about FROM sessions ORDER BY id")]
+        texts = self._query("SELECT about FROM sessions ORDER BY id")
+        sessions = [self._parse_json(about) for (about,) in texts]
+        if not all(isinstance(about, dict) for about in sessions):
+            raise OSError(f"{self.path}: is damaged (wrong description of a session)")
+        return sessions
 
     def scenarios(self) -> dict[str, str]:
         """Return the latest TOML of each scenario, by id."""

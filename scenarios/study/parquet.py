@@ -1,15 +1,20 @@
 """The tables of a study as Parquet files; `kswarms.agents.common.columns` describes their columns."""
 
+import re
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
 from typing import Any, Final
 
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from kswarms.agents.common.columns import RECORDED_TABLES, TABLES, Column, column_names
-from kswarms.agents.common.tables import arrow_schema
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.tables import arrow_schema, check_table
+from kswarms.scenarios.description.scenario import ID_PATTERN
 from kswarms.scenarios.study.ledger import Ledger, Point
 from kswarms.scenarios.study.mixtures import Curve
 
@@ -19,8 +24,16 @@ _POINTS_PER_PART: Final = 1000
 _ROWS_PER_GROUP: Final = 100_000
 """Minimum number of rows of a row group, which limits the memory of an export."""
 
-_GRID_KINDS: Final[dict[str, set[type]]] = {"boolean": {bool}, "integer": {int}, "real": {int, float}}
-"""Python types of grid values that fit each kind of column; any value fits a column of text."""
+_WRONG_CONTENT: Final = (
+    pa.ArrowException, AttributeError, LookupError, OverflowError, RecursionError, TypeError, ValueError
+)  # fmt: skip
+"""Errors that the content of a damaged ledger raises."""
+_PATTERNS: Final = {"run": "[0-9a-f]{16}", "scenario": ID_PATTERN}
+"""Patterns of columns of text whose values may become names of files."""
+_TYPES: Final[dict[str, set[type]]] = {
+    "boolean": {bool}, "integer": {int}, "real": {int, float}, "text": {str}
+}  # fmt: skip
+"""Python types of values that fit each kind of column; in a column of text of a grid, any value fits."""
 
 
 def pack(records: Mapping[str, Mapping[str, list[Any]]]) -> dict[str, bytes]:
@@ -41,22 +54,57 @@ def export(ledger: Ledger, directory: Path) -> list[Path]:
 
     The bytes do not depend on the order in which runs end. A damaged ledger raises an `OSError`.
     """
-    grid_columns, grid_points = _grid(ledger)
     paths = []
-    try:
-        for name in STUDY_TABLES:
-            if name in RECORDED_TABLES:
-                schema, parts = arrow_schema(TABLES[name]), _recorded_parts(ledger, name)
-            else:
-                labels, rest = TABLES[name][: len(Point._fields)], TABLES[name][len(Point._fields) :]
-                schema = arrow_schema((*labels, *grid_columns, *rest))
-                parts = _result_parts(ledger, name, schema, grid_points)
+    with _damage(ledger):
+        for name, schema, parts in _tables(ledger):
             path = directory / f"{name}.parquet"
             if _write(path, schema, parts):
                 paths.append(path)
-    except (pa.ArrowException, LookupError) as error:
-        raise OSError(f"{ledger.path}: is damaged ({error!r})") from error
     return paths
+
+
+def check_tables(ledger: Ledger) -> None:
+    """Raise an `OSError` if `export` would report a damaged ledger; nothing is written."""
+    with _damage(ledger):
+        for _, _, parts in _tables(ledger):
+            for _ in parts:
+                pass
+
+
+@contextmanager
+def _damage(ledger: Ledger) -> Iterator[None]:
+    """Re-raise errors of wrong content of a ledger as `OSError`."""
+    try:
+        yield
+    except _WRONG_CONTENT as error:
+        reason = str(error) if isinstance(error, InputError) else repr(error)
+        raise OSError(f"{ledger.path}: is damaged ({reason})") from error
+
+
+def _tables(ledger: Ledger) -> Iterator[tuple[str, pa.Schema, Iterator[pa.Table]]]:
+    """Yield name, schema and parts of each table."""
+    grid_columns, grid_points = _grid(ledger)
+    for name in STUDY_TABLES:
+        if name in RECORDED_TABLES:
+            schema, parts = arrow_schema(TABLES[name]), _recorded_parts(ledger, name)
+        else:
+            labels, rest = TABLES[name][: len(Point._fields)], TABLES[name][len(Point._fields) :]
+            schema = arrow_schema((*labels, *grid_columns, *rest))
+            parts = _result_parts(ledger, name, schema, grid_points)
+        yield name, schema, (_check(part, name, schema) for part in parts)
+
+
+def _check(part: pa.Table, name: str, schema: pa.Schema) -> pa.Table:
+    """Return a part of a table; raise a `ValueError` if it does not fit the schema."""
+    if not part.schema.equals(schema):
+        raise ValueError(f"wrong columns in {name}")
+    check_table(part, name)
+    for column, pattern in _PATTERNS.items():
+        if column in part.column_names:
+            for text in pc.unique(part[column]).to_pylist():
+                if not re.fullmatch(pattern, text):
+                    raise InputError(f"{name}.parquet column {column}", text, f"must match {pattern}")
+    return part
 
 
 def _grid(ledger: Ledger) -> tuple[list[Column], dict[Curve, dict[str, Any]]]:
@@ -68,9 +116,11 @@ def _grid(ledger: Ledger) -> tuple[list[Column], dict[Curve, dict[str, Any]]]:
     }
     columns = []
     for name in dict.fromkeys(name for point in points.values() for name in point):
+        if not name.replace(".", "_").isidentifier():
+            raise ValueError(f"wrong name of a field of a grid: {name!r:.50}")
         with_field = [point for point in points.values() if name in point]
         types = {type(point[name]) for point in with_field}
-        kind = next((kind for kind, accepted in _GRID_KINDS.items() if types <= accepted), "text")
+        kind = next((kind for kind, accepted in _TYPES.items() if types <= accepted), "text")
         if kind == "text":
             for point in with_field:
                 point[name] = str(point[name])
@@ -80,7 +130,7 @@ def _grid(ledger: Ledger) -> tuple[list[Column], dict[Curve, dict[str, Any]]]:
 
 def _recorded_parts(ledger: Ledger, name: str) -> Iterator[pa.Table]:
     for run, rows in ledger.records(name):
-        part = pa.ipc.open_stream(rows).read_all()
+        part = pa.ipc.open_stream(pa.py_buffer(rows)).read_all()
         yield part.add_column(0, "run", pa.array([run] * len(part), pa.string()))
 
 
@@ -95,7 +145,11 @@ def _result_parts(
             for point, rows in batch
             for row in rows
         ]
-        yield pa.table({column: [row[column] for row in rows] for column in schema.names}, schema=schema)
+        columns = {column: [row[column] for row in rows] for column in schema.names}
+        for column in TABLES[name]:  # Arrow would convert some wrong types, such as 1.5 for an integer
+            if not set(map(type, columns[column.name])) <= _TYPES[column.kind]:
+                raise TypeError(f"wrong type of {column.name} in {name}")
+        yield pa.table(columns, schema=schema)
 
 
 def _write(path: Path, schema: pa.Schema, parts: Iterator[pa.Table]) -> bool:

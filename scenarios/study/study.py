@@ -7,41 +7,25 @@ tables and the manifest are written from the ledger.
 import os
 import platform
 import re
-import shutil
 from collections.abc import Generator, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack, closing, suppress
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any, Final, Self
+from typing import Any, Self
 
 from kswarms import __version__
-from kswarms.agents.common.atomic_files import TEMPORARY, remove_temporary_files
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.runs.errors import RunError
 from kswarms.scenarios.runs.outcome import Outcome, Result, environment
-from kswarms.scenarios.runs.run import Run, code_version, describe_curve, expand
+from kswarms.scenarios.runs.run import Order, Run, code_version, describe_curve, expand, select_shard
 from kswarms.scenarios.runs.sweep import sweep
 from kswarms.scenarios.signals import deferred_signals
-from kswarms.scenarios.study.database import LEDGER_FILE, create_database
-from kswarms.scenarios.study.directory import make_directory, write_json
+from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.ledger import Ledger
-from kswarms.scenarios.study.lock import LOCK_FILE, directory_lock
-from kswarms.scenarios.study.parquet import STUDY_TABLES, export, pack
-
-MANIFEST: Final = "manifest.json"
-"""Name of the file that describes the origin of the results."""
-_TEMPORARY_TABLES: Final = f"{TEMPORARY}tables-"
-"""Prefix of the temporary directory of the tables."""
-_FILES: Final = (
-    LOCK_FILE,
-    MANIFEST,
-    *(f"{name}.parquet" for name in STUDY_TABLES),
-    *(f"{LEDGER_FILE}-{kind}" for kind in ("journal", "wal", "shm")),
-)
-_ENTROPY: Final = "numpy PCG64(SeedSequence(seed, spawn_key=(robot, purpose))), and nothing else"
+from kswarms.scenarios.study.outputs import locked_directory, write_manifest, write_tables
+from kswarms.scenarios.study.parquet import pack
 
 
 class Study:
@@ -75,16 +59,9 @@ class Study:
         self._session: int | None = None
 
     def __enter__(self) -> Self:
-        ledger = self.directory / LEDGER_FILE
-        make_directory(self.directory, LEDGER_FILE, _FILES)
-        # First the ledger: it tells directories of kswarms from others, also if this process is killed now.
-        create_database(ledger)
         with ExitStack() as stack:
-            stack.enter_context(directory_lock(self.directory, self._command))
-            for path in self.directory.glob(f"{_TEMPORARY_TABLES}*"):
-                shutil.rmtree(path, ignore_errors=True)
-            remove_temporary_files(self.directory)
-            self._ledger = stack.enter_context(Ledger(ledger, create=True))
+            stack.enter_context(locked_directory(self.directory, self._command, create=True))
+            self._ledger = stack.enter_context(Ledger(self.directory / LEDGER_FILE, create=True))
             self._resources = stack.pop_all()
         self._about = _describe_session(self._command)
         return self
@@ -97,14 +74,15 @@ class Study:
                 with suppress(OSError):  # report the first error
                     self._update_session(status=f"stopped: {error}", ended=_now())
                 return
-            # If a table cannot be written, no present table is replaced.
-            with TemporaryDirectory(dir=self.directory, prefix=_TEMPORARY_TABLES) as temporary:
-                written = export(self._ledger, Path(temporary))
-                self.tables = [path.replace(self.directory / path.name) for path in written]
+            self.tables = write_tables(self._ledger, self.directory)
             self._update_session(status=_status(error), ended=_now())
 
     def plan(
-        self, scenarios: Sequence[Scenario], first_seed: int = 0, records: Sequence[str] = ()
+        self,
+        scenarios: Sequence[Scenario],
+        first_seed: int = 0,
+        records: Sequence[str] = (),
+        shard: tuple[int, int] = (1, 1),
     ) -> list[Run]:
         """Add scenarios to the study; return their unfinished runs.
 
@@ -114,6 +92,8 @@ class Study:
             Seed of the first game at each density, ≥ 0.
         records : sequence of str
             Names of tables (`RECORDED_TABLES`). A run without one of them counts as unfinished.
+        shard : tuple of int
+            Number of the part to play, from 1, and number of parts (see `select_shard`).
 
         Raises
         ------
@@ -121,7 +101,7 @@ class Study:
             If the directory has runs of another version, of another environment (unless `allow_mixed`), or
             of a different curve of the same name.
         """
-        runs = expand(scenarios, first_seed)
+        runs = select_shard(expand(scenarios, first_seed), *shard)
         self._ledger.plan(
             {scenario.id: scenario.to_toml() for scenario in scenarios},
             {
@@ -136,10 +116,16 @@ class Study:
         self._update_session(
             scenarios={each.id: {"densities": each.densities, "seeds": each.seeds} for each in scenarios},
             first_seed=first_seed,
+            shard="{}/{}".format(*shard),
             records=list(records),
             runs={"requested": len(runs), "done before": len(runs) - len(waiting)},
         )
         return waiting
+
+    def merge(self, others: Sequence[Ledger]) -> None:
+        """Add the content of other ledgers, which `kswarms.scenarios.study.merge` has checked."""
+        self._ledger.merge(others)
+        self._update_session(merged=[str(other.path.parent) for other in others])
 
     @property
     def other_origins(self) -> list[str]:
@@ -154,6 +140,7 @@ class Study:
         records: Sequence[str] = (),
         executor: Executor | None = None,
         run_limit: float | None = None,
+        order: Order = "longest",
     ) -> Generator[Result, None, None]:
         """Play runs; store each and then yield it with its outcome or failure, and its CPU time (s).
 
@@ -165,13 +152,16 @@ class Study:
             As for `kswarms.scenarios.runs.sweep.play_all`.
         records : sequence of str
             Names of the tables to record and store.
+        order : {'longest', 'seeds'}
+            Whether the longest runs are played first, or all runs of the first seed.
 
         Raises
         ------
         RunError
             If the executor breaks, or a worker has another environment and `allow_mixed` is False.
         """
-        with closing(sweep(runs, jobs, ",".join(records), executor, run_limit)) as results:
+        text = ",".join(records)
+        with closing(sweep(runs, jobs, text, executor, run_limit, order)) as results:
             for run, result, seconds in results:
                 if isinstance(result, Outcome):
                     self._require_environment(result)
@@ -188,15 +178,7 @@ class Study:
         """Change the description of this session in the ledger, and write the manifest."""
         self._about |= changes
         self._session = self._ledger.write_session(self._session, self._about)
-        content = {
-            "kswarms": __version__,
-            "code": code_version(),
-            "entropy": _ENTROPY,
-            "environments": self._ledger.runs_by_environment(),
-            "scenarios": self._ledger.scenarios(),
-            "sessions": self._ledger.sessions(),
-        }
-        write_json(self.directory / MANIFEST, content)
+        write_manifest(self._ledger, self.directory)
 
 
 def _status(error: BaseException | None) -> str:

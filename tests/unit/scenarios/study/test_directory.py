@@ -144,7 +144,7 @@ def test_a_process_that_is_killed_at_the_start_leaves_a_directory_of_kswarms(
 
     out = tmp_path / "out"
     with monkeypatch.context() as patch:
-        patch.setattr("kswarms.scenarios.study.study.directory_lock", kill)
+        patch.setattr("kswarms.scenarios.study.outputs.directory_lock", kill)
         with pytest.raises(KeyboardInterrupt):
             Study(out).__enter__()
     assert {path.name for path in out.iterdir()} == {"ledger.sqlite"}
