@@ -41,24 +41,22 @@ def merge_studies(
     OSError
         If a ledger is damaged (nothing is written), or writing fails.
     """
-    study = Study(out, command, allow_mixed)
     with ExitStack() as stack:
-        parts = [stack.enter_context(_open_part(directory, out)) for directory in directories]
-        if (out / LEDGER_FILE).exists():
-            stack.enter_context(study)
-            with Ledger(out / LEDGER_FILE) as held:
-                _refuse_conflicts([held, *parts], allow_mixed)
-        else:
-            _refuse_conflicts(parts, allow_mixed)
-            stack.enter_context(study)
+        parts = [stack.enter_context(_open_part(directory)) for directory in directories]
+        for directory in directories:
+            if directory.resolve() == out.resolve():
+                raise InputError("dir", str(directory), "must be another directory than OUT")
+        held = [stack.enter_context(_open_part(out))] if (out / LEDGER_FILE).exists() else []
+        _refuse_conflicts([*held, *parts], allow_mixed)
+        for ledger in held:
+            ledger.close()
+        study = stack.enter_context(Study(out, command, allow_mixed))
         study.merge(parts)
     return study.tables
 
 
-def _open_part(directory: Path, out: Path) -> Ledger:
+def _open_part(directory: Path) -> Ledger:
     """Open a ledger to read it, and check all of its content."""
-    if directory.resolve() == out.resolve():
-        raise InputError("dir", str(directory), "must be another directory than that of the merged study")
     if holder := lock_holder(directory):
         raise InputError("dir", str(directory), f"is in use by {holder}; wait until it ends")
     ledger = Ledger(directory / LEDGER_FILE)
