@@ -5,7 +5,7 @@ from typing import Literal
 from pydantic import Field
 
 from kswarms.agents.common.descriptions import FrozenModel
-from kswarms.agents.common.limits import LONGEST_TIME
+from kswarms.agents.common.limits import LONGEST_NAME, LONGEST_TIME, SHORTEST_TIME
 
 AWAY: Literal[-1] = -1
 TOWARDS: Literal[1] = 1
@@ -24,6 +24,6 @@ class Action(FrozenModel):
         Duration of the drive after the turn (s).
     """
 
-    name: str = Field(pattern=r"^[\w.-]+$")
+    name: str = Field(pattern=r"^[\w.-]+$", max_length=LONGEST_NAME)
     direction: Literal[-1, 1]
-    duration: float = Field(gt=0, le=LONGEST_TIME)
+    duration: float = Field(ge=SHORTEST_TIME, le=LONGEST_TIME)

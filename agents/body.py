@@ -4,7 +4,16 @@ from typing import Final
 
 from pydantic import Field
 
-from kswarms.agents.common.descriptions import FrozenModel
+from kswarms.agents.common.descriptions import FrozenModel, Line
+from kswarms.agents.common.limits import (
+    FASTEST,
+    LARGEST_RADIUS,
+    LONGEST_DISTANCE,
+    LONGEST_NAME,
+    SHORTEST_DISTANCE,
+    SLOWEST,
+    SMALLEST_RADIUS,
+)
 
 SENSORS: Final = 8  # proximity sensors, one every 45°, the first ahead
 
@@ -24,10 +33,10 @@ class Body(FrozenModel):
         Speed at a drive of 1 (m/s).
     """
 
-    name: str = "user-defined"
-    radius: float = Field(ge=0.001, le=1000)
-    sensor_range: float = Field(gt=0, le=10_000)
-    top_speed: float = Field(gt=0, le=10_000)
+    name: Line = Field("user-defined", max_length=LONGEST_NAME)
+    radius: float = Field(ge=SMALLEST_RADIUS, le=LARGEST_RADIUS)
+    sensor_range: float = Field(ge=SHORTEST_DISTANCE, le=LONGEST_DISTANCE)
+    top_speed: float = Field(ge=SLOWEST, le=FASTEST)
 
     @property
     def sensing_scale(self) -> float:

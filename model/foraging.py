@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from kswarms.agents.common.descriptions import parse_number
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.spec import PolicyLike
 from kswarms.agents.user_code.syntax import split_outside
@@ -76,5 +77,7 @@ def _swarms(n: int, policies: str | Sequence[PolicyLike], shares: str, drives: s
     swarms = []
     for name, size, (drive, _, drive_action) in zip(names, apportion(int(n), parts), pairs, strict=True):
         given = {"drive": drive, "drive_action": drive_action}
-        swarms.append(Swarm(policy=name, size=size, **{key: text for key, text in given.items() if text}))
+        swarms.append(
+            Swarm(policy=name, size=size, **{key: parse_number(text) for key, text in given.items() if text})
+        )
     return tuple(swarms)

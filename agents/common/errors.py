@@ -8,6 +8,8 @@ from typing import Final, Self
 
 from pydantic import ValidationError
 
+from kswarms.agents.common.quoting import for_terminal
+
 LONGEST_VALUE: Final = 120
 """Maximum number of characters of a value or a field in a message."""
 _LONGEST_RULE: Final = 2000
@@ -41,8 +43,7 @@ def shorten(value: object) -> str:
 
 def printable(text: str) -> str:
     """Return a text as one line: line breaks become spaces, other control characters escape sequences."""
-    text = re.sub(r"\s*[\n\r]\s*", " ", text)
-    return text if text.isprintable() else "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
+    return for_terminal(re.sub(r"\s*[\n\r]\s*", " ", text))
 
 
 def _cut(text: str) -> str:
@@ -105,7 +106,7 @@ class InputError(ValueError):
         cause = first.get("ctx", {}).get("error")
         if isinstance(cause, InputError):
             outer_path = path.removesuffix(cause.field).removesuffix(".")  # a validator may name its field
-            return cls(f"{outer_path}.{cause.field}".removeprefix("."), cause.value, cause.allowed)
+            return cls(f"{outer_path}.{cause.field}".strip("."), cause.value, cause.allowed)
         if unknown:
             return cls(path, first["input"], f"unknown field; allowed: {', '.join(fields)}")
         if first["type"] == "missing":

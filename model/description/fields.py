@@ -2,13 +2,23 @@
 
 from typing import Annotated, Any, Final, Literal, get_args
 
+import numpy as np
 from pydantic import Field, InstanceOf, field_serializer, model_validator
 
 from kswarms.agents.actions import Action
 from kswarms.agents.body import BODIES, Body
 from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.limits import LONGEST_DISTANCE, LONGEST_TIME, MAX_PLACES, MAX_PUCKS
+from kswarms.agents.common.limits import (
+    LONGEST_DISTANCE,
+    LONGEST_TIME,
+    MAX_ACTIONS,
+    MAX_PLACES,
+    MAX_PUCKS,
+    SHORTEST_DISTANCE,
+    SHORTEST_TIME,
+    SLOWEST,
+)
 from kswarms.agents.policies.spec import PolicySpec, parse_policies
 from kswarms.model.description.parameters import PRESETS, Parameters, parse_parameters
 
@@ -30,8 +40,8 @@ class SwarmFields(FrozenModel):
     """
 
     policy: Annotated[str, Field(min_length=1)] | tuple[InstanceOf[PolicySpec], ...]
-    drive: float = Field(0.6, gt=0, le=1)
-    drive_action: float = Field(0.6, gt=0, le=1)
+    drive: float = Field(0.6, ge=SLOWEST, le=1)
+    drive_action: float = Field(0.6, ge=SLOWEST, le=1)
 
     @model_validator(mode="before")
     @classmethod
@@ -92,15 +102,15 @@ class GameFields(FrozenModel):
     layout: Layout = "symmetric"
     stations: tuple[Place, ...] = Field((), max_length=MAX_PLACES)
     bases: tuple[Place, ...] = Field((), max_length=MAX_PLACES)
-    side: float = Field(2.0, gt=0, le=LONGEST_DISTANCE)
+    side: float = Field(2.0, ge=SHORTEST_DISTANCE, le=LONGEST_DISTANCE)
     body: Body = BODIES["krembot-sim"]
     parameters: Parameters = PRESETS["fitted"]
-    actions: tuple[Action, ...] = ()
+    actions: tuple[Action, ...] = Field((), max_length=MAX_ACTIONS)
     supply: int | None = Field(None, ge=1, le=MAX_PUCKS)
-    learning: float = Field(0.0, ge=0)
-    duration: float = Field(600.0, gt=0)
+    learning: float = Field(0.0, ge=0, le=LONGEST_TIME)
+    duration: float = Field(600.0, ge=SHORTEST_TIME, le=LONGEST_TIME)
     puck_limit: int | None = Field(None, ge=1, le=MAX_PUCKS)
-    sample_period: float = Field(10.0, gt=0, le=LONGEST_TIME)
+    sample_period: float = Field(10.0, ge=SHORTEST_TIME, le=LONGEST_TIME)
 
     @model_validator(mode="before")
     @classmethod
@@ -115,7 +125,7 @@ class GameFields(FrozenModel):
                 raise InputError("body", name, f"must be one of {', '.join(BODIES)}, or a body as numbers")
             values["body"] = BODIES[name]
         for name in ("puck_limit", "supply"):
-            if values.get(name) == 0 and not isinstance(values[name], bool):
+            if not isinstance(values.get(name), bool | np.bool_) and values.get(name) == 0:
                 values[name] = None
         return values
 

@@ -8,7 +8,7 @@ from pydantic import Field, field_validator, model_validator
 
 from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.limits import LONGEST_STEP, MAX_PERIODS, MAX_ROBOTS
+from kswarms.agents.common.limits import LONGEST_STEP, MAX_ROBOTS, MAX_SWARMS, SHORTEST_STEP
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.registry import ALIASES, POLICIES
 from kswarms.agents.policies.spec import parse_policies
@@ -48,7 +48,7 @@ class Game(GameFields):
         If a field is out of range or the fields do not fit together.
     """
 
-    swarms: tuple[Swarm, ...] = Field(min_length=1)
+    swarms: tuple[Swarm, ...] = Field(min_length=1, max_length=MAX_SWARMS)
     absent: tuple[int, ...] = ()
     absent_from: Literal["learning", "game"] = "learning"
 
@@ -90,13 +90,21 @@ class Game(GameFields):
 
     def _check_motion(self) -> None:
         parameters, body = self.parameters, self.body
-        fastest = max(max(swarm.drive, swarm.drive_action) for swarm in self.swarms)
-        if parameters.period * body.top_speed * fastest > LONGEST_STEP * body.radius:
+        drives = [drive for swarm in self.swarms for drive in (swarm.drive, swarm.drive_action)]
+        steps = [parameters.period * body.top_speed * drive for drive in (min(drives), max(drives))]
+        if steps[1] > LONGEST_STEP * body.radius:
             rule = f"must be so short that a robot moves at most {LONGEST_STEP} of its radius in a period"
             raise InputError("period", parameters.period, rule)
-        if (self.learning + self.duration) / parameters.period > MAX_PERIODS:
-            rule = f"must be at most {MAX_PERIODS} periods, learning included"
-            raise InputError("duration", self.duration, rule)
+        if steps[0] < SHORTEST_STEP * body.radius:
+            rule = f"must be so high that a robot moves at least {SHORTEST_STEP} of its radius in a period"
+            raise InputError("drive", min(drives), rule)
+        for name in ("station_radius", "base_radius"):
+            if (radius := getattr(parameters, name)) < steps[1] / 2:
+                rule = f"must be at least {steps[1] / 2:.4g} m, or robots drive past the centre unnoticed"
+                raise InputError(name, radius, rule)
+        for name, time in (("learning", self.learning), ("duration", self.duration)):
+            if 0 < time < parameters.period:
+                raise InputError(name, time, f"must be at least one control period, {parameters.period} s")
         if body.radius + body.sensing_scale * parameters.wall_distance > self.side / 2:
             # Otherwise a robot could see walls in every direction and find no free heading.
             raise InputError("wall_distance", parameters.wall_distance, "must be less than half the arena")

@@ -6,9 +6,19 @@ from typing import Final, Literal
 from pydantic import Field
 
 from kswarms.agents.actions import AWAY, TOWARDS, Action
-from kswarms.agents.common.descriptions import FrozenModel
+from kswarms.agents.common.descriptions import FrozenModel, parse_number
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.limits import LONGEST_DISTANCE, LONGEST_TIME, SHORTEST_PERIOD, SLOWEST_TURN
+from kswarms.agents.common.limits import (
+    FASTEST,
+    LONGEST_DISTANCE,
+    LONGEST_PERIOD,
+    LONGEST_TIME,
+    MAX_FRICTION,
+    SHORTEST_DISTANCE,
+    SHORTEST_TIME,
+    SLOWEST,
+    SMALLEST_ANGLE,
+)
 
 
 class Parameters(FrozenModel):
@@ -58,23 +68,23 @@ class Parameters(FrozenModel):
         Whether another robot ahead interrupts an action.
     """
 
-    period: float = Field(0.1, ge=SHORTEST_PERIOD, le=1)
-    conflict_distance: float = Field(0.1718, gt=0, le=LONGEST_DISTANCE)
-    front_half_angle: float = Field(math.radians(62.5), gt=0, le=math.pi)
-    flight_duration: float = Field(1.619, gt=0, le=LONGEST_TIME)
-    fight_duration: float = Field(1.0, gt=0, le=LONGEST_TIME)
-    turning_rate: float = Field(2.96, ge=SLOWEST_TURN)
-    flight_range: float = Field(0.46, gt=0, le=LONGEST_DISTANCE)
-    active_range: float = Field(0.2467, gt=0, le=LONGEST_DISTANCE)
-    leg_mean: float = Field(6.7, gt=0, le=LONGEST_TIME)
-    wander_turn: float = Field(math.radians(86), gt=0, le=math.pi)
-    wall_distance: float = Field(0.06, gt=0, le=LONGEST_DISTANCE)
+    period: float = Field(0.1, ge=SHORTEST_TIME, le=LONGEST_PERIOD)
+    conflict_distance: float = Field(0.1718, ge=SHORTEST_DISTANCE, le=LONGEST_DISTANCE)
+    front_half_angle: float = Field(math.radians(62.5), ge=SMALLEST_ANGLE, le=math.pi)
+    flight_duration: float = Field(1.619, ge=SHORTEST_TIME, le=LONGEST_TIME)
+    fight_duration: float = Field(1.0, ge=SHORTEST_TIME, le=LONGEST_TIME)
+    turning_rate: float = Field(2.96, ge=SLOWEST, le=FASTEST)
+    flight_range: float = Field(0.46, ge=SHORTEST_DISTANCE, le=LONGEST_DISTANCE)
+    active_range: float = Field(0.2467, ge=SHORTEST_DISTANCE, le=LONGEST_DISTANCE)
+    leg_mean: float = Field(6.7, ge=SHORTEST_TIME, le=LONGEST_TIME)
+    wander_turn: float = Field(math.radians(86), ge=SMALLEST_ANGLE, le=math.pi)
+    wall_distance: float = Field(0.06, ge=SHORTEST_DISTANCE, le=LONGEST_DISTANCE)
     wall_half_angle: float = Field(0.0, ge=0, lt=math.pi / 2)
     wall_escape: Literal["clear", "away"] = "clear"
-    station_radius: float = Field(0.16, gt=0)
-    base_radius: float = Field(0.17, gt=0)
-    base_range: float = Field(0.82, gt=0, le=LONGEST_DISTANCE)
-    friction: float = Field(0.1596, ge=0)
+    station_radius: float = Field(0.16, ge=SHORTEST_DISTANCE, le=LONGEST_DISTANCE)
+    base_radius: float = Field(0.17, ge=SHORTEST_DISTANCE, le=LONGEST_DISTANCE)
+    base_range: float = Field(0.82, ge=SHORTEST_DISTANCE, le=LONGEST_DISTANCE)
+    friction: float = Field(0.1596, ge=0, le=MAX_FRICTION)
     push_share: float = Field(0.0, ge=0, le=1)
     clearance: float = Field(0.01, ge=0, le=LONGEST_DISTANCE)
     wall_clearance: float = Field(0.005, ge=0, le=LONGEST_DISTANCE)
@@ -125,7 +135,7 @@ def parse_parameters(text: str) -> Parameters:
             raise InputError("parameters", name, "after the preset, must be name=value")
         if values.setdefault(name, value) != value:
             raise InputError(f"parameters.{name}", value, "must be given once")
-    return PRESETS[preset].replace(**values)
+    return PRESETS[preset].replace(**{name: parse_number(value) for name, value in values.items()})
 
 
 def text_of(parameters: Parameters) -> str:

@@ -6,8 +6,9 @@ from typing import Any
 from pydantic import Field, field_validator
 
 from kswarms.agents.body import BODIES
+from kswarms.agents.common.descriptions import Line
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.limits import LONGEST_NAME, ONE_LINE
+from kswarms.agents.common.limits import LONGEST_NAME, MAX_ROBOTS, MAX_SWARMS
 from kswarms.agents.policies.spec import parse_policies
 from kswarms.model.description.fields import GameFields, SwarmFields
 from kswarms.model.description.game import Game, Swarm, apportion
@@ -29,7 +30,7 @@ class SwarmRule(SwarmFields):
     """
 
     policy: str = Field(min_length=1)
-    share: int = Field(default=1, ge=1)
+    share: int = Field(default=1, ge=1, le=MAX_ROBOTS)
 
     @field_validator("policy", mode="before")
     @classmethod
@@ -53,9 +54,9 @@ class Condition(GameFields):
         Fields that the grid of the scenario sets, with their values. The scenario fills it in.
     """
 
-    name: str = Field(default="", max_length=LONGEST_NAME, pattern=ONE_LINE)
-    swarms: tuple[SwarmRule, ...] = Field(min_length=1)
-    multiple_of: int | None = Field(default=None, ge=1)
+    name: Line = Field(default="", max_length=LONGEST_NAME)
+    swarms: tuple[SwarmRule, ...] = Field(min_length=1, max_length=MAX_SWARMS)
+    multiple_of: int | None = Field(default=None, ge=1, le=MAX_ROBOTS)
     grid_point: tuple[tuple[str, Value], ...] = ()
 
     @property

@@ -10,9 +10,9 @@ from typing import Any, Final, Self
 import tomlkit
 from pydantic import Field, model_validator
 
-from kswarms.agents.common.descriptions import FrozenModel
+from kswarms.agents.common.descriptions import FrozenModel, Line
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.limits import LONGEST_NAME, LONGEST_TITLE, MAX_SEEDS, ONE_LINE
+from kswarms.agents.common.limits import LONGEST_NAME, LONGEST_TITLE, MAX_POINTS, MAX_SEEDS
 from kswarms.model.description.game import Game
 from kswarms.scenarios.description.condition import Condition, Value
 from kswarms.scenarios.description.grid import collapse_grid, expand_grid
@@ -48,9 +48,9 @@ class Scenario(FrozenModel):
     """
 
     id: str = Field(pattern=ID_PATTERN, max_length=LONGEST_NAME)
-    title: str = Field(min_length=1, max_length=LONGEST_TITLE, pattern=ONE_LINE)
-    conditions: tuple[Condition, ...] = Field(min_length=1)
-    densities: tuple[int, ...] = Field(default=DENSITIES, min_length=1)
+    title: Line = Field(min_length=1, max_length=LONGEST_TITLE)
+    conditions: tuple[Condition, ...] = Field(min_length=1, max_length=MAX_POINTS)
+    densities: tuple[int, ...] = Field(default=DENSITIES, min_length=1, max_length=MAX_POINTS)
     seeds: int = Field(default=SEEDS, ge=1, le=MAX_SEEDS)
     grid: dict[str, tuple[Value, ...]] = {}
 

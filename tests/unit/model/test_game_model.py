@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from kswarms.agents.common.limits import LONGEST_TIME, SHORTEST_PERIOD, SLOWEST_TURN
+from kswarms.agents.common.limits import FASTEST, LONGEST_TIME, SHORTEST_TIME, SLOWEST
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.description.parameters import PRESETS
 from kswarms.model.foraging import ForagingModel
@@ -39,8 +39,8 @@ def test_a_game_is_a_mesa_model_of_robots_in_a_continuous_space() -> None:
 
 def test_games_with_parameters_at_their_limits_can_be_played() -> None:
     times = dict.fromkeys(("flight_duration", "fight_duration", "leg_mean"), LONGEST_TIME)
-    for rest in ({"turning_rate": SLOWEST_TURN}, {"turning_rate": 1e308}, {"leg_mean": 1e-308}):
-        slow = PRESETS["fitted"].replace(period=SHORTEST_PERIOD, conflict_distance=0.5, **(times | rest))
+    for rest in ({"turning_rate": SLOWEST}, {"turning_rate": FASTEST}, {"leg_mean": SHORTEST_TIME}):
+        slow = PRESETS["fitted"].replace(period=SHORTEST_TIME, conflict_distance=0.5, **(times | rest))
         game = GAME.replace(parameters=slow, duration=1e-4, sample_period=LONGEST_TIME)
         model = GameModel(game, 2, "robots")
         model.play()

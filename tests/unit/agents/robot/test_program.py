@@ -124,7 +124,7 @@ def test_turning_does_not_depend_on_the_drive(scene: Scene) -> None:
 def test_a_wander_turn_is_its_draw_in_whole_periods(scene: Scene) -> None:
     # Legs of one period, far from the walls.
     limit = math.radians(40)
-    changes = {"leg_mean": 1e-6, "wander_turn": limit, "station_radius": 1e-6}
+    changes = {"leg_mean": 1e-6, "wander_turn": limit, "station_radius": 0.01}
     model = scene([(0.0, 0.0, 0.0)], changes=changes, seed=6)
     rng = stream(6, 0, Purpose.WANDER)
     heading, now = 0.0, 0
@@ -203,7 +203,7 @@ def test_a_new_leg_begins_after_every_turn(scene: Scene, monkeypatch: pytest.Mon
 
     monkeypatch.setattr(Krembot, "begin_wall_turn", record_turn)
     # Stations are tiny, so it never carries a puck home.
-    model = scene([(0.0, 0.0, 0.3)], changes={"leg_mean": 1e6, "station_radius": 1e-6}, duration=300.0)
+    model = scene([(0.0, 0.0, 0.3)], changes={"leg_mean": 1e6, "station_radius": 0.01}, duration=300.0)
     model.env.run(until=2999)
     assert len(turns) > 10
     for turn, leg in zip(turns, legs_begun(model)[1:], strict=False):

@@ -95,7 +95,7 @@ INVALID = [
     ("learner(reward='own.py:NaN')", "policy.reward='own.py:NaN': of(2.3, 0.0, ", "not nan"),
     ("learner(reward='own.py:Nothing')", "policy.reward='own.py:Nothing': of(2.3, 0.0, ", "not None"),
     ("learner(reward='own.py:Zero')", "policy.reward='own.py:Zero': its trial raises Zero", at("t_a / t_p")),
-    ("learner(reward='own.py:Flat(level=\"x\")')", "policy.reward.level='x': must be a valid number", ""),
+    ("learner(reward='own.py:Flat(level=\"x\")')", "policy.reward.level='x': must be a number", ""),
     ("learner(reward='own.py:Flat(up=1)')", "policy.reward.up=1: unknown field; allowed: level", ""),
     ("learner(reward='own.py:Needing')", "policy.reward.gain=None: is required", ""),
     ("learner(rule='own.py:Flat')", "policy.rule='own.py:Flat': must be a ", "selection_rules.Rule"),

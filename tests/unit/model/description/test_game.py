@@ -6,6 +6,7 @@ import pickle
 from functools import partial
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -120,7 +121,7 @@ def test_presets_and_limits_have_short_forms() -> None:
         (swarm(size=10**400), f"swarms.0.size={shorten(10**400)}: must be less than or equal to 1000000"),
         (swarm(size=-3), "swarms.0.size=-3: "),
         (swarm(size=2.5), "swarms.0.size=2.5: must be a valid integer"),
-        (swarm(drive=0), "swarms.0.drive=0: must be greater than 0"),
+        (swarm(drive=0), "swarms.0.drive=0: must be greater than or equal to 0.001"),
         (swarm(drive=1.1), "swarms.0.drive=1.1: must be less than"),
         (swarm(drive=math.nan), "swarms.0.drive=nan: "),
         (swarm(drive_action=-1), "swarms.0.drive_action=-1: "),
@@ -134,7 +135,7 @@ def test_presets_and_limits_have_short_forms() -> None:
         ({"absent": (0,), **swarm(size=1)}, "absent=(0,): must leave a robot"),
         ({"absent": (1.5,)}, "absent.0=1.5: must be a valid integer"),
         ({"absent": (1,), "absent_from": "dinner"}, "absent_from='dinner': must be 'learning' or 'game'"),
-        ({"side": 0}, "side=0: must be greater than 0"),
+        ({"side": 0}, "side=0: must be greater than or equal to 0.0001"),
         ({"side": -2.0}, "side=-2.0: "),
         ({"side": math.nan}, "side=nan: "),
         ({"duration": 0}, "duration=0: "),
@@ -162,16 +163,43 @@ def test_presets_and_limits_have_short_forms() -> None:
         ({"parameters": {"wall_clearance": 1}}, "n=20: robots of radius 0.085 m do not fit in"),
         ({"parameters": {"wall_clearance": 9000}}, "n=20: robots of radius 0.085 m do not fit in"),
         ({"parameters": {"wall_distance": 1.5}}, "wall_distance=1.5: must be less than half the arena"),
-        ({"sample_period": 0}, "sample_period=0: must be greater than 0"),
+        ({"sample_period": 0}, "sample_period=0: must be greater than or equal to 0.000001"),
         ({"sample_period": math.nan}, "sample_period=nan: "),
         ({"sample_period": 1e308}, "sample_period=1e+308: must be less than or equal to 1000000000"),
         ({"sample_period": "often"}, "sample_period='often': "),
         ({"parameters": {"period": 0.5}}, "period=0.5: must be so short"),
         ({"side": 1e7}, "side=10000000.0: must be less than or equal to 10000"),
-        ({"side": True}, "side=True: must be a number"),
-        ({"puck_limit": True}, "puck_limit=True: must be a number"),
-        ({"duration": 1e300}, "duration=1e+300: must be at most 9007199254740992 periods"),
-        ({"learning": 1e300}, "duration=600.0: must be at most 9007199254740992 periods, learning included"),
+        *[
+            ({name: value}, f"{name}={value!r}: must be a number")
+            for name in ("side", "puck_limit", "learning", "sample_period", "duration")
+            for value in (True, np.False_, "1", b"1")
+        ],
+        ({"absent": (0, True)}, "absent.1=True: must be a number"),
+        ({"stations": [(0.0, 0.0), (np.True_, 0.5)]}, "stations.1.0=np.True_: must be a number"),
+        ({"bases": [("0.5", 0.0)]}, "bases.0.0='0.5': must be a number"),
+        (swarm(size="2"), "swarms.0.size='2': must be a number"),
+        (swarm(drive_action=True), "swarms.0.drive_action=True: must be a number"),
+        (
+            {"actions": ({"name": "x", "direction": True, "duration": 1},)},
+            "actions.0.direction=True: must be a nu",
+        ),
+        ({"body": {**LARGE, "top_speed": "1"}}, "body.top_speed='1': must be a number"),
+        ({"body": {**LARGE, "name": " \t"}}, "body.name=' \\t': must be one line"),
+        ({"parameters": {"push_share": False}}, "parameters.push_share=False: must be a number"),
+        ({"side": 10**400}, "side="),
+        (swarm(drive=1e-300), "swarms.0.drive=1e-300: must be greater than or equal to 0.001"),
+        (
+            {"body": {**LARGE, "top_speed": 1e-300}},
+            "body.top_speed=1e-300: must be greater than or equal to 0.001",
+        ),
+        ({"parameters": "fitted, period=1e-6", **swarm(drive=0.001)}, "drive=0.001: must be so high that"),
+        ({"parameters": {"station_radius": 0.001}}, "station_radius=0.001: must be at least 0.0075 m"),
+        ({"parameters": {"base_radius": 0.007}}, "base_radius=0.007: must be at least 0.0075 m"),
+        ({"duration": 0.05}, "duration=0.05: must be at least one control period, 0.1 s"),
+        ({"learning": 1e-9}, "learning=1e-09: must be at least one control period, 0.1 s"),
+        ({"actions": (DASH.replace(duration=1e-6), RAM) * 51}, "actions=("),
+        ({"duration": 1e300}, "duration=1e+300: must be less than or equal to 1000000000"),
+        ({"learning": 1e300}, "learning=1e+300: must be less than or equal to 1000000000"),
         ({"supply": 2**63}, "supply=9223372036854775808: must be less than or equal to 1000000000"),
         ({"layout": "nearer-station", "swarms": (AVOID,) * 3}, "layout='nearer-station': must have"),
         ({"layout": "random-stations", "parameters": {"station_radius": 0.6}}, "station_radius=0.6: "),
@@ -179,13 +207,20 @@ def test_presets_and_limits_have_short_forms() -> None:
         ({"parameters": {"period": 0.35}, **swarm(drive=0.1, drive_action=0.9)}, "period=0.35: must be so"),
     ],
 )
-def test_errors_name_field_value_and_rule(
-    fields: dict[str, Any], message: str
-) -> None:
+def test_errors_name_field_value_and_rule(fields: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError) as refusal:
         game(**fields)
     assert str(refusal.value).startswith(message)
     assert "\n" not in str(refusal.value)
+
+
+def test_equal_numbers_have_equal_texts() -> None:
+    signed = game(learning=-0.0, stations=[(-0.0, np.float32(-0.0))], parameters="fitted, friction=-0.0")
+    plain = game(learning=0, stations=[(0, 0)], parameters={"friction": 0})
+    assert signed == plain
+    assert signed.model_dump_json() == plain.model_dump_json()
+    sizes = (np.int64(3), 3.0, 3)
+    assert len({swarm.model_dump_json() for swarm in (Swarm(policy="avoid", size=n) for n in sizes)}) == 1
 
 
 def test_a_robot_may_cover_eight_tenths_of_its_radius_in_a_period() -> None:

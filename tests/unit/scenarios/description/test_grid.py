@@ -77,7 +77,7 @@ def test_a_grid_sets_fields_of_games_and_swarms() -> None:
         ({"S1.rule.gamma": [0.5]}, "grid.S1.rule.gamma=0.5: needs a swarm of learners"),
         ({"side": []}, "grid.side=[]: must be a list of different values"),
         ({"side": [2, 3, 2]}, "grid.side=[2, 3, 2]: must be a list of different values"),
-        ({"side": [-2]}, "grid.side=-2: must be greater than 0"),
+        ({"side": [-2]}, "grid.side=-2: must be greater than or equal to 0.0001"),
         ({"side": 2}, "grid.side=2: must be a valid tuple"),
         ({"side": [{}]}, "grid.side.0"),
         ({"side": list(range(2, 43)), "duration": list(range(1, 41))}, "grid=1640: must have at most 1000"),

@@ -103,7 +103,12 @@ def test_a_game_has_all_fields_of_its_condition() -> None:
     ("changes", "field"),
     [
         ({"id": "Fig 6.1"}, "id"),
-        ({"title": ""}, "title"),
+        *[
+            ({"title": title}, "title")
+            for title in ("", " ", "\u00a0\u2003", "a\nb", "\x1b[1m", "\u202ea", "\u200b", "\udcff")
+        ],
+        *[({"seeds": seeds}, "seeds") for seeds in (True, "3", 10**400, -0.0)],
+        *[({"densities": [6, n]}, "densities.1") for n in (True, "8")],
         ({"seeds": 0}, "seeds"),
         ({"densities": ()}, "densities"),
         ({"densities": (6, 7)}, "n"),

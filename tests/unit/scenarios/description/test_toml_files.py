@@ -49,7 +49,7 @@ def test_fields_at_their_defaults_may_be_left_out(tmp_path: Path) -> None:
         (
             "duration = 60",
             'duration = "long"',
-            "hunt.toml: conditions.0.duration='long': must be a valid num",
+            "hunt.toml: conditions.0.duration='long': must be a num",
         ),
         ("duration", "length", "hunt.toml: conditions.0.length=60: unknown field; allowed: layout, "),
         ('"avoid"', '"atack"', "hunt.toml: policy='atack': must be one of avoid"),

@@ -61,7 +61,7 @@ def test_an_invalid_control_is_reported_in_one_line_and_the_game_is_kept(session
     session.player.advance(3.0)
     kept = session.player
     session.change(parameters="fitted, friction=-1")
-    assert session.error == "friction='-1': must be greater than or equal to 0"
+    assert session.error == "friction=-1.0: must be greater than or equal to 0"
     assert session.player is kept
     assert session.form.fields["parameters"] == "fitted, friction=-1"
     session.change_swarm(0, policy="atack")
