@@ -5,7 +5,7 @@ import secrets
 import sqlite3
 from collections.abc import Callable, Generator
 from contextlib import closing, contextmanager, suppress
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, Final, Literal, Self, TypeVar
 from urllib.parse import quote
@@ -22,6 +22,16 @@ _READABLE: Final = {1: "CREATE TEMP VIEW runs AS SELECT *, NULL AS environment F
 """Earlier formats that can be read, each with a statement that adds what it lacks."""
 _APPLICATION: Final = 0x6B73776D  # "kswm" identifies ledgers among SQLite files
 _HEADER_SIZE: Final = 100  # bytes at the start of a file of SQLite, with its change counter and size
+_LONGEST_CPU_TIME: Final = 1e12  # s
+_DAMAGE: Final = (
+    ArithmeticError,
+    AttributeError,
+    LookupError,
+    MemoryError,
+    RuntimeError,
+    TypeError,
+    ValueError,
+)  # includes UnicodeError and RecursionError
 _TABLES: Final = f"""
 PRAGMA application_id = {_APPLICATION};
 PRAGMA user_version = {_FORMAT};
@@ -185,12 +195,59 @@ def _prepare(db: sqlite3.Connection, create: bool) -> None:
             reason = f"format {form} of an earlier version can be read, not resumed; use another directory"
             raise sqlite3.DatabaseError(reason)
         db.execute(_READABLE[form])
+    _check_schema(db)
+    if empty:
+        db.executescript(f"BEGIN IMMEDIATE; {_TABLES} COMMIT")
+    else:
+        _check_types(db)
+
+
+def _check_schema(db: sqlite3.Connection) -> None:
     for (name,) in db.execute(
         "SELECT name FROM main.sqlite_master WHERE type NOT IN ('table', 'index') OR sql LIKE '%VIRTUAL%'"
     ):
         raise sqlite3.DatabaseError(f"with {name!r:.60}, which is no table of a ledger")
-    if empty:
-        db.executescript(f"BEGIN IMMEDIATE; {_TABLES} COMMIT")
+
+
+def _check_types(db: sqlite3.Connection) -> None:
+    """Refuse values that do not have the type of their column. SQLite stores any type in any column."""
+    for table, tests in _type_tests().items():
+        present = {column for _, column, *_ in db.execute(f"PRAGMA main.table_info({table})")}
+        if not present:
+            raise sqlite3.DatabaseError(f"the table {table} is missing")
+        condition = " AND ".join(test for column, test in tests.items() if column in present)
+        if db.execute(f"SELECT 1 FROM main.{table} WHERE NOT ({condition})").fetchone():
+            raise sqlite3.DatabaseError(f"a value of the table {table} has a wrong type")
+
+
+@cache
+def _type_tests() -> dict[str, dict[str, str]]:
+    """Return an SQL expression for each column of each table, which is true for values of its type."""
+    tests: dict[str, dict[str, str]] = {}
+    with closing(sqlite3.connect(":memory:")) as model:
+        model.executescript(_TABLES)
+        for table, column, kind, required, key in model.execute(
+            "SELECT t.name, c.name, c.type, c.'notnull', c.pk FROM sqlite_master t"
+            " JOIN pragma_table_info(t.name) c WHERE t.type = 'table'"
+        ):
+            test = f"typeof({column}) = '{kind.lower()}'"
+            if kind == "REAL":
+                test += f" AND abs({column}) < {_LONGEST_CPU_TIME}"
+            if not (required or key):
+                test = f"({column} IS NULL OR {test})"
+            tests.setdefault(table, {})[column] = test
+    return tests
+
+
+@contextmanager
+def damage_errors(path: Path, *kinds: type[Exception]) -> Generator[None, None, None]:
+    """Re-raise errors that unexpected content of a ledger causes, among them `kinds`, as `OSError`."""
+    try:
+        yield
+    except InputError:
+        raise
+    except (*_DAMAGE, *kinds) as error:
+        raise OSError(f"{path}: is damaged ({error!r:.200})") from error
 
 
 @contextmanager

@@ -15,7 +15,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.model.description.game import Game
 from kswarms.scenarios.runs.outcome import Failure, Outcome, environment
 from kswarms.scenarios.runs.run import Run, code_version, digest
-from kswarms.scenarios.study.database import open_database, os_errors
+from kswarms.scenarios.study.database import damage_errors, open_database, os_errors
 from kswarms.scenarios.study.mixtures import Contents, Curve, refuse_mixtures
 
 _MERGE: Final = (
@@ -81,10 +81,8 @@ class Ledger:
                 yield row
 
     def _parse_json(self, text: str) -> Any:
-        try:
+        with damage_errors(self.path):
             return json.loads(text)
-        except (ValueError, TypeError, RecursionError) as error:
-            raise OSError(f"{self.path}: is damaged ({error})") from error
 
     def plan(
         self,
@@ -191,9 +189,10 @@ class Ledger:
     def grid_points(self) -> dict[Curve, dict[str, Any]]:
         """Return, for each curve of a grid, the values that the grid sets, by field."""
         points = {}
-        for scenario, condition, text in self._query("SELECT * FROM curves ORDER BY scenario, condition"):
-            if point := self._parse_json(text)["condition"].get("grid_point"):
-                points[scenario, condition] = dict(point)
+        with damage_errors(self.path):
+            for *curve, text in self._query("SELECT * FROM curves ORDER BY scenario, condition"):
+                if point := self._parse_json(text)["condition"].get("grid_point"):
+                    points[tuple(curve)] = dict(point)
         return points
 
     def records(self, name: str) -> Iterator[tuple[str, bytes]]:
@@ -215,7 +214,9 @@ class Ledger:
         if version != __version__:
             raise InputError("run", run_digest, f"was played by kswarms {version}, this is {__version__}")
         labels = tuple(self._query("SELECT scenario, condition FROM points WHERE run = ?", run_digest))
-        run = Run(run_digest, Game(**self._parse_json(description)), seed, labels)
+        with damage_errors(self.path):
+            game = Game(**self._parse_json(description))
+            run = Run(run_digest, game, seed, (labels[0], *labels[1:]))
         if digest(run.game, run.seed) != run_digest:
             raise InputError("run", run_digest, "loads a file that has changed since it was played")
         return run
@@ -239,11 +240,9 @@ class Ledger:
 
     def sessions(self) -> list[dict[str, Any]]:
         """Return the descriptions of all sessions, in order."""
-        texts = self._query("SELECT about FROM sessions ORDER BY id")
-        sessions = [self._parse_json(about) for (about,) in texts]
-        if not all(isinstance(about, dict) for about in sessions):
-            raise OSError(f"{self.path}: is damaged (wrong description of a session)")
-        return sessions
+        texts = [text for (text,) in self._query("SELECT about FROM sessions ORDER BY id")]
+        with damage_errors(self.path):
+            return [{"started": "", **self._parse_json(text)} for text in texts]
 
     def scenarios(self) -> dict[str, str]:
         """Return the latest TOML of each scenario, by id."""
@@ -280,7 +279,7 @@ class Ledger:
     def failed_runs(self) -> Iterator[tuple[Point, str, str]]:
         """Yield the runs whose last attempt failed: a point of each, its error and traceback."""
         for *point, error, trace in self._query(
-            "SELECT run, MIN(scenario), condition, n, points.seed, error, traceback"
+            "SELECT run, MIN(scenario), condition, n, points.seed, error, COALESCE(traceback, '')"
             " FROM points JOIN runs USING (run) WHERE error NOT NULL"
             " GROUP BY run ORDER BY MIN(scenario), condition, n, points.seed"
         ):
