@@ -46,7 +46,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
         ("UPDATE runs SET error = ?", "\x1b[2J\nred", ""),
         ("UPDATE points SET scenario = ?", b"\xff", "status replay conflicts run"),
         ("DELETE FROM points WHERE run != ?", "", "replay conflicts"),
-        ("UPDATE points SET n = ?", -(2**62), ""),
+        ("UPDATE points SET n = ?", -(2**62), "run"),
         ("UPDATE records SET rows = ?", b"junk", "run"),
         ("UPDATE records SET rows = ?", 7, "status replay conflicts run"),
         ("UPDATE sessions SET about = ?", "null", "status run"),
