@@ -240,13 +240,13 @@ def _type_tests() -> dict[str, dict[str, str]]:
 
 
 @contextmanager
-def damage_errors(path: Path, *kinds: type[Exception]) -> Generator[None, None, None]:
-    """Re-raise errors that unexpected content of a ledger causes, among them `kinds`, as `OSError`."""
+def damage_errors(path: Path) -> Generator[None, None, None]:
+    """Re-raise errors that unexpected content of a ledger causes as `OSError`."""
     try:
         yield
     except InputError:
         raise
-    except (*_DAMAGE, *kinds) as error:
+    except _DAMAGE as error:
         raise OSError(f"{path}: is damaged ({error!r:.200})") from error
 
 
