@@ -8,6 +8,8 @@ from pydantic import Field, model_validator
 
 from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.input_files import read_input_file
+from kswarms.agents.common.limits import MAX_TEXT_FILE
 from kswarms.analysis.findings.claims import Claim
 from kswarms.analysis.statistics.intervals import CONFIDENCE
 
@@ -59,10 +61,11 @@ def read_findings(path: Path) -> tuple[Finding, ...]:
     InputError
         The file cannot be read, is not TOML, or has invalid or other content.
     """
+    content = read_input_file("findings", path, MAX_TEXT_FILE)
     try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError("findings", str(path), "must be a readable TOML file") from error
+        text = content.decode()
+    except UnicodeDecodeError as error:
+        raise InputError("findings", str(path), "must be a TOML file in UTF-8") from error
     return parse_findings(text, str(path))
 
 

@@ -10,6 +10,8 @@ from typing import Any, Final
 import pandas as pd
 
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.input_files import read_input_file
+from kswarms.agents.common.limits import MAX_JSON_FILE
 from kswarms.analysis.report.page import Part
 from kswarms.analysis.results.tables import count_rows
 from kswarms.analysis.text_tables import TextTable
@@ -26,14 +28,15 @@ def libraries_part() -> Part:
 
 def directory_parts(directory: Path) -> list[Part]:
     """Return parts for the files of a results directory and its manifest; `InputError` if unreadable."""
-    described = [_describe(path) for path in sorted(directory.glob("*.parquet"))]
+    tables = sorted(path for path in directory.glob("*.parquet") if path.is_file())
+    described = [_describe(path) for path in tables]
     rows = [[each["file"], str(each["rows"]), str(each["bytes"]), each["sha256"][:16]] for each in described]
     files = Part("files", "Files")
     header = ["file", "rows", "bytes", "SHA-256, first 16 digits"]
     table = TextTable(header, rows, "")
     files.add_table("files", "Files of the results directory", table, pd.DataFrame(described))
     manifest = directory / MANIFEST_FILE
-    if not manifest.is_file():
+    if not manifest.exists():
         text = f"The directory has no {MANIFEST_FILE}: versions and commands of the runs are unknown."
         return [files, Part("manifest", "Manifest", [text])]
     return [files, *_manifest_parts(_read_manifest(manifest))]
@@ -48,8 +51,10 @@ def _describe(path: Path) -> dict[str, Any]:
 
 def _read_manifest(path: Path) -> dict[str, Any]:
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        content = json.loads(read_input_file("results", path, MAX_JSON_FILE).decode())
+    except InputError:
+        raise
+    except (ValueError, RecursionError) as error:
         raise InputError("results", str(path), "must be readable JSON") from error
     if not isinstance(content, dict):
         raise InputError("results", str(path), "must be a JSON object")

@@ -47,7 +47,8 @@ def write_table(directory: Path, rows: Sequence[dict[str, Any]]) -> Path:
             replaced = pc.and_(replaced, pc.equal(earlier[name], rows[0][name]))
         table = pa.concat_tables([earlier.filter(pc.invert(replaced)), table])
     table = table.sort_by([(name, "ascending") for name in (*_KEY, "seed", "robot")])
-    with atomic_path(path) as file:
+    # Arrow opens no path that is not UTF-8.
+    with atomic_path(path) as temporary, temporary.open("wb") as file:
         pq.write_table(table, file)
     return path
 

@@ -157,7 +157,8 @@ def _write(path: Path, schema: pa.Schema, parts: Iterator[pa.Table]) -> bool:
     first = next(parts, None)
     if first is None:
         return False
-    with pq.ParquetWriter(path, schema) as writer:
+    # Arrow opens no path that is not UTF-8.
+    with path.open("wb") as file, pq.ParquetWriter(file, schema) as writer:
         group = [first]
         for part in parts:
             if sum(map(len, group)) >= _ROWS_PER_GROUP:

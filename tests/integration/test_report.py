@@ -137,7 +137,7 @@ def test_rows_of_a_batch_run_can_be_drawn_and_reported(tmp_path: Path) -> None:
         ("corrupt", "results='corrupt/conflicts.parquet': must be a readable Parquet file"),
         ("good --out nowhere/a.html", "out='nowhere/a.html': must be a writable file (No such file"),
         ("good --out empty", "out='empty': must be a file, not a directory"),
-        ("good --findings none.toml", "findings='none.toml': must be a readable TOML file"),
+        ("good --findings none.toml", "findings='none.toml': must be a readable file (No such file"),
         ("good --findings taken.toml", "findings.id='6.1a-alike': must differ from those of the thesis"),
         ("good --files good/runs.parquet", "files='good/runs.parquet': must be a writable directory"),
     ],

@@ -113,7 +113,7 @@ def test_invalid_findings_are_refused(tmp_path: Path, text: str, complaint: str)
 def test_an_unreadable_file_is_refused(tmp_path: Path) -> None:
     (tmp_path / "latin.toml").write_bytes(b'id = "\xe9"')
     for name in ("absent.toml", "latin.toml", "."):
-        with pytest.raises(InputError, match="must be a readable TOML file"):
+        with pytest.raises(InputError, match=r"must be a (readable|regular) file|must be a TOML file"):
             read_findings(tmp_path / name)
 
 

@@ -1,6 +1,7 @@
 """Parts of a report: coverage, page, findings, recorded games, provenance."""
 
 import json
+import os
 from functools import partial
 from pathlib import Path
 from urllib.parse import unquote
@@ -197,8 +198,25 @@ def test_provenance_shows_the_manifest(tmp_path: Path) -> None:
     assert json.loads(others[2].preformatted) == content["sessions"]
 
 
-@pytest.mark.parametrize(("text", "allowed"), [("{", "readable JSON"), ("[1]", "a JSON object")])
+@pytest.mark.parametrize(
+    ("text", "allowed"),
+    [("{", "readable JSON"), ("[" * 100_000, "readable JSON"), ("[1]", "a JSON object")],
+    ids=["truncated", "nested", "list"],
+)
 def test_an_invalid_manifest_is_an_error(tmp_path: Path, text: str, allowed: str) -> None:
     (tmp_path / "manifest.json").write_text(text)
     with pytest.raises(InputError, match=f"manifest.json': must be {allowed}"):
+        directory_parts(tmp_path)
+
+
+def test_pipes_and_lone_surrogates_in_a_results_directory(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.parquet")  # reading it would block
+    (tmp_path / "manifest.json").write_text('{"command": "kswarms run caf\\udce9", "all": {"a": "\\ud800"}}')
+    files, *manifest = directory_parts(tmp_path)
+    assert files.tables[0].table.rows == []
+    Report("r", [], [Chapter("c", "C", manifest)]).write_page(tmp_path / "page.html")
+    assert "caf\\udce9" in (tmp_path / "page.html").read_text()
+    (tmp_path / "manifest.json").unlink()
+    os.mkfifo(tmp_path / "manifest.json")
+    with pytest.raises(InputError, match=r"manifest.json': must be a regular file"):
         directory_parts(tmp_path)
