@@ -67,3 +67,15 @@ def format_duration(seconds: float) -> str:
     if seconds < 3599.5:
         return "{}:{:02} min".format(*divmod(round(seconds), 60))
     return "{}:{:02} h".format(*divmod(round(seconds / 60), 60))
+
+
+def format_size(size: float) -> str:
+    """Return a number of bytes in kB, MB, GB or TB.
+
+    Examples
+    --------
+    >>> format_size(2_400), format_size(7_340_000), format_size(81e9), format_size(5e13)
+    ('2.4 kB', '7.3 MB', '81.0 GB', '50.0 TB')
+    """
+    power = next((k for k, unit in enumerate("kMG", 1) if size < 0.99995 * 1000 ** (k + 1)), 4)
+    return f"{size / 1000**power:,.1f} {'kMGT'[power - 1]}B"

@@ -17,7 +17,7 @@ from kswarms.scenarios.cli.options import CPUS, AllowMixed, FirstSeed, Jobs, com
 from kswarms.scenarios.cli.printing import print_line, print_table, warn
 from kswarms.scenarios.cli.progress import ProgressStyle
 from kswarms.scenarios.description.text import parse_integers, split_words
-from kswarms.scenarios.runs.run import Order
+from kswarms.scenarios.runs.run import Order, expand, select_shard
 
 
 def run(
@@ -102,11 +102,17 @@ def run(
         warn(f"left out, since no density suits them: {', '.join(left_out)}")
 
     from kswarms.scenarios.cli.playing import Plan, play_study
+    from kswarms.scenarios.cli.space import describe_trajectories
 
     part = _parse_shard(shard)
     plan = Plan(
         scenarios, first_seed, part, records, order, jobs, scheduler, run_limit, allow_mixed
     )
+    if "trajectory" in records:
+        runs = select_shard(expand(scenarios, first_seed), *part)
+        size = describe_trajectories(out, runs, records)
+        if not quiet:
+            warn(size)
     command = shlex.join(context.obj)
     tables, failed = play_study(out, plan, command, "none" if quiet else progress)
     lines = [f"table:  {table}" for table in tables]

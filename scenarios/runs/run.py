@@ -56,9 +56,13 @@ class Run:
 
 def cpu_seconds(n: int, learning: float, duration: float, puck_limit: int | None, period: float) -> float:
     """Estimate the CPU time (s) of a run of `n` robots, given its durations and control period (s)."""
-    if puck_limit is not None:
-        duration = min(duration, puck_limit * _ROBOT_SECONDS_PER_PUCK / n)
-    return _ROBOT_SECOND * n * (learning + duration) * (0.1 / period)
+    duration = learning + expected_duration(n, duration, puck_limit)
+    return _ROBOT_SECOND * n * duration * (0.1 / period)
+
+
+def expected_duration(n: int, duration: float, puck_limit: int | None) -> float:
+    """Estimate the length of the measured game (s)."""
+    return duration if puck_limit is None else min(duration, puck_limit * _ROBOT_SECONDS_PER_PUCK / n)
 
 
 @cache
