@@ -2,13 +2,10 @@
 
 import json
 import os
-import random
-import shutil
 import signal
 import sqlite3
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -31,33 +28,6 @@ NO_PROCESS = 99_999_999
 
 def finished_runs() -> set[str]:
     return set(pq.read_table("results/runs.parquet")["run"].to_pylist())
-
-
-@pytest.mark.parametrize("moments", [5, pytest.param(50, marks=pytest.mark.full)])
-def test_a_sweep_killed_at_any_moment_resumes_to_the_same_tables(moments: int) -> None:
-    whole = uninterrupted_tables()
-    shutil.rmtree("whole")
-    started = time.monotonic()
-    assert uninterrupted_tables() == whole
-    length = time.monotonic() - started
-    draws = random.Random(moments)
-    finished = []
-    for moment in range(moments):
-        directory = f"killed-{moment}"
-        # Forked: a new process would spend most of the moments on its imports.
-        child = os.fork()
-        if child == 0:
-            invoke([*RUN, "--out", directory])
-            os._exit(0)
-        time.sleep((moment + draws.random()) / moments * length)
-        os.kill(child, signal.SIGKILL)
-        os.waitpid(child, 0)
-        assert invoke([*RUN, "--out", directory]) == 0
-        assert read_tables(directory) == whole
-        finished.append(read_sessions(directory)[-1]["runs"]["done before"])
-        assert read_sessions(directory)[-1]["status"] == "done"
-        assert not list(Path(directory).glob(".unfinished*"))
-    assert len(set(finished)) > 2, "all moments were before the first run or after the last"
 
 
 def test_ctrl_c_keeps_finished_runs(
