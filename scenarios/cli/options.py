@@ -1,6 +1,5 @@
 """Options that several commands share, their validation and their shell completion."""
 
-import os
 from pathlib import Path
 from typing import Annotated, Final
 
@@ -10,11 +9,15 @@ from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.limits import MAX_JOBS, MAX_SEED
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selection import DEFAULT_N, DEFAULT_SCENARIO, select_scenarios
+from kswarms.scenarios.cli.cpus import available_cpus
 from kswarms.scenarios.runs.run import Run, digest
 
-CPUS: Final = os.cpu_count() or 1
+CPUS: Final = min(available_cpus(), MAX_JOBS)
 Jobs = Annotated[
-    int, typer.Option(min=1, max=MAX_JOBS, show_default="one for each CPU", help="Worker processes.")
+    int,
+    typer.Option(
+        min=1, max=MAX_JOBS, show_default="one for each available CPU", help="Number of worker processes."
+    ),
 ]
 AllowMixed = Annotated[
     bool, typer.Option("--allow-mixed", help="Mix runs of different versions of Python, numpy and numba.")

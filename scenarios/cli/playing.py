@@ -1,8 +1,7 @@
 """Play the runs of a study, with its warnings and its progress."""
 
 from collections.abc import Iterator, Sequence
-from concurrent.futures import Executor
-from contextlib import closing, contextmanager
+from contextlib import closing, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -47,12 +46,13 @@ def play_study(out: Path, plan: Plan, command: str, progress: ProgressStyle) -> 
         advice = "safer and faster: --out on a local disk, such as $TMPDIR; copy the directory afterwards"
         warn(f"{out} is on a network file system ({kind}), which can damage a ledger; {advice}")
     try:
-        with _executor(plan) as (executor, workers), Study(out, command, plan.allow_mixed) as study:
+        connection = nullcontext() if plan.scheduler is None else dask_executor(plan.scheduler)
+        with connection as executor, Study(out, command, plan.allow_mixed) as study:
             runs = study.plan(plan.scenarios, plan.first_seed, plan.records, plan.shard)
             for origin in study.other_origins:
                 warn(f"{out} has runs of other code, {origin}; use another --out to play them again")
             playing = True
-            results = study.play(runs, workers, plan.records, executor, plan.run_limit, plan.order)
+            results = study.play(runs, plan.jobs, plan.records, executor, plan.run_limit, plan.order)
             with closing(results) as played:
                 for count in show_progress(played, runs, progress):
                     failed = count.failed
@@ -71,13 +71,3 @@ def _games_with_user_code(scenarios: Sequence[Scenario]) -> Iterator[Game]:
         for condition in scenario.conditions:
             if any(rule.runs_user_code for rule in condition.swarms):
                 yield condition.game(scenario.densities[0])
-
-
-@contextmanager
-def _executor(plan: Plan) -> Iterator[tuple[Executor | None, int]]:
-    """Yield the executor, None for worker processes of this machine, and the number of workers."""
-    if plan.scheduler is None:
-        yield None, plan.jobs
-    else:
-        with dask_executor(plan.scheduler) as connected:
-            yield connected

@@ -13,10 +13,17 @@ WATCH_EVERY: Final = 5.0
 """Time between two calls of `watch` (s)."""
 
 
+def count_workers(executor: Executor) -> int:
+    """Return the present number of workers of an executor, by an attribute of it; 0 if it has none."""
+    # The executors of Python and loky have the second attribute, that of mpi4py has the first.
+    counts = (getattr(executor, name, None) for name in ("num_workers", "_max_workers"))
+    return next((count for count in counts if isinstance(count, int)), 0)
+
+
 def play_through(
     executor: Executor,
     waiting: deque[Run],
-    at_once: int,
+    at_once: Callable[[], int],
     task: Callable[[Run], tuple[Outcome | Failure, float]],
     watch: Callable[[Sequence[Run]], None] | None = None,
 ) -> Generator[tuple[Run, Outcome | Failure | None, float], None, None]:
@@ -35,7 +42,7 @@ def play_through(
     playing: dict[Future[Any], Run] = {}
     broken = False
     while True:
-        while waiting and len(playing) < at_once and not broken:
+        while waiting and not broken and len(playing) < at_once():
             try:
                 future = executor.submit(task, waiting[0])
             except BrokenExecutor:

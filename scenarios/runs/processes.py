@@ -45,7 +45,7 @@ def play_in_processes(
             batch, workers, at_once = deque(waiting.popleft() for _ in range(size)), jobs, 2 * jobs
         with new_workers(workers) as executor:
             began = monotonic()
-            for run, result, seconds in play_through(executor, batch, at_once, task, watch):
+            for run, result, seconds in play_through(executor, batch, partial(int, at_once), task, watch):
                 if result is not None:
                     yield run, result, seconds
                     began = monotonic()

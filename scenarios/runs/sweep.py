@@ -7,7 +7,7 @@ from contextlib import closing
 from functools import partial
 
 from kswarms.scenarios.runs.errors import RunError
-from kswarms.scenarios.runs.executor import play_through
+from kswarms.scenarios.runs.executor import count_workers, play_through
 from kswarms.scenarios.runs.outcome import Failure, Outcome, Result
 from kswarms.scenarios.runs.play import attempt, attempt_in_worker
 from kswarms.scenarios.runs.processes import play_in_processes
@@ -34,7 +34,11 @@ def sweep(
     if executor is not None:
         no_workers = RunError("all workers exited before the sweep finished")
         task = partial(attempt_in_worker, record, code_version(), None)
-        for run, result, seconds in play_through(executor, waiting, 2 * jobs, task):
+
+        def at_once() -> int:
+            return 2 * max(jobs, count_workers(executor))
+
+        for run, result, seconds in play_through(executor, waiting, at_once, task):
             if result is None:
                 raise no_workers
             yield run, result, seconds
@@ -62,7 +66,8 @@ def play_all(
     ----------
     jobs : int
         Number of worker processes. With 1, this process plays, except games with user-defined code. An
-        executor gets 2 × `jobs` runs at a time.
+        executor gets two runs at a time for each of its workers, or 2 × `jobs` runs if this is more or its
+        number of workers is unknown.
     record : str
         Names of the tables to record (`RECORDED_TABLES`), separated by commas.
     executor : concurrent.futures.Executor, optional

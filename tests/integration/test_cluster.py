@@ -43,7 +43,7 @@ def cluster() -> Iterator[LocalCluster]:
     """Two workers of one thread each, restarted when they die."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("PYTHONPATH", os.pathsep.join(path or str(Path.cwd()) for path in sys.path))
-        with LocalCluster(2, threads_per_worker=1, dashboard_address=None) as started:
+        with LocalCluster(2, threads_per_worker=1, dashboard_address=":0") as started:
             yield started
 
 
@@ -68,8 +68,8 @@ def test_no_run_is_lost_when_a_worker_of_the_cluster_is_killed(cluster: LocalClu
     results = {}
     with (
         Client(cluster) as client,
-        dask_executor(cluster.scheduler_address) as (executor, jobs),
-        closing(sweep(runs, jobs, executor=executor)) as played,
+        dask_executor(cluster.scheduler_address) as executor,
+        closing(sweep(runs, executor=executor)) as played,
     ):
         cluster.wait_for_workers(2)
         victim = next(iter(client.run(os.getpid).values()))
@@ -94,8 +94,8 @@ def test_closing_a_sweep_removes_its_tasks_from_the_cluster(cluster: LocalCluste
         return len(dask_scheduler.tasks)
 
     with Client(cluster) as client:
-        with dask_executor(cluster.scheduler_address) as (executor, jobs):
-            played = sweep(expand([SMALL.replace(densities=(40, 50), seeds=100)]), jobs, executor=executor)
+        with dask_executor(cluster.scheduler_address) as executor:
+            played = sweep(expand([SMALL.replace(densities=(40, 50), seeds=100)]), executor=executor)
             next(played)
             wait_until(lambda: client.run_on_scheduler(tasks) > 30, "few tasks are on their way")
             played.close()

@@ -8,8 +8,6 @@ import subprocess
 import sys
 import time
 import weakref
-from collections.abc import Callable, Iterable
-from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor
 from contextlib import closing
 from multiprocessing import active_children
 from pathlib import Path
@@ -19,13 +17,13 @@ import pytest
 
 from kswarms.agents.common.columns import RECORDED_TABLES
 from kswarms.model.game_model import GameModel
-from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.runs import processes
 from kswarms.scenarios.runs.errors import RunError
-from kswarms.scenarios.runs.outcome import Failure, Outcome, Result
+from kswarms.scenarios.runs.outcome import Failure
 from kswarms.scenarios.runs.play import attempt, play
-from kswarms.scenarios.runs.run import Run, expand
+from kswarms.scenarios.runs.run import Run
 from kswarms.scenarios.runs.sweep import play_all, sweep
+from tests.helpers.short_runs import by_digest, failing_run, short_runs
 
 IMPORTS = """
 from kswarms.scenarios.catalogue import CATALOGUE
@@ -33,25 +31,6 @@ from kswarms.scenarios.runs.sweep import play_all
 from kswarms.scenarios.runs.run import expand
 """
 """Start of the scripts of these tests."""
-
-
-def short_runs(name: str, densities: tuple[int, ...] = (6, 10), seeds: int = 2) -> list[Run]:
-    """Return runs of a scenario, shortened to games of 20 s and at most as much learning."""
-    scenario = CATALOGUE[name].replace(densities=densities, seeds=seeds)
-    conditions = tuple(
-        condition.replace(duration=20.0, learning=min(20.0, condition.learning))
-        for condition in scenario.conditions
-    )
-    return expand([scenario.replace(conditions=conditions)])
-
-
-def failing_run(run: Run) -> Run:
-    """Return a run whose seed is not allowed."""
-    return Run("bad", run.game, -1, run.labels)
-
-
-def by_digest(results: Iterable[Result]) -> dict[str, Outcome | Failure]:
-    return {run.digest: result for run, result, _ in results}
 
 
 class Deadly(Run):
@@ -240,55 +219,3 @@ def is_alive(process: int) -> bool:
         return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except (ProcessLookupError, FileNotFoundError):
         return False
-
-
-# Executors.
-
-
-def test_an_executor_plays_and_a_failure_does_not_end_the_sweep() -> None:
-    runs = short_runs("fig-6.1a", densities=(6,), seeds=4)
-    with ThreadPoolExecutor(1) as executor:
-        results = by_digest(sweep([failing_run(runs[0]), *runs], executor=executor))
-    failure = results.pop("bad")
-    assert isinstance(failure, Failure)
-    assert failure.error.startswith("InputError: seed=-1")
-    assert failure.trace.startswith("Traceback")
-    assert results == by_digest(sweep(runs))
-
-
-def executor_with(submit: Callable[[], Future[object]]) -> ThreadPoolExecutor:
-    class Executor(ThreadPoolExecutor):
-        def submit(self, *_arguments: object, **_options: object) -> Future[object]:
-            return submit()
-
-    return Executor(1)
-
-
-def refuse() -> Future[object]:
-    raise BrokenExecutor
-
-
-def cancel() -> Future[object]:
-    future: Future[object] = Future()
-    future.cancel()
-    future.set_running_or_notify_cancel()
-    return future
-
-
-def lose() -> Future[object]:
-    future: Future[object] = Future()
-    future.set_exception(TypeError("cannot pickle"))
-    return future
-
-
-@pytest.mark.parametrize("submit", [refuse, cancel])
-def test_a_broken_executor_ends_the_sweep(submit: Callable[[], Future[object]]) -> None:
-    with executor_with(submit) as executor, pytest.raises(RunError, match="all workers exited"):
-        list(sweep(short_runs("fig-6.1a"), executor=executor))
-
-
-def test_a_result_that_cannot_be_pickled_is_a_failure() -> None:
-    with executor_with(lose) as executor:
-        ((_, failure, _),) = sweep(short_runs("fig-6.1a", densities=(6,), seeds=1), executor=executor)
-    assert isinstance(failure, Failure)
-    assert failure.error == "TypeError: cannot pickle"
