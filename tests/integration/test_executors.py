@@ -34,7 +34,7 @@ def test_all_workers_of_an_executor_play(
         met.wait()
         return Failure("played"), 0.0
 
-    monkeypatch.setattr("kswarms.scenarios.runs.executor.attempt", attempt)
+    monkeypatch.setattr("kswarms.scenarios.runs.sweep.attempt_in_worker", attempt)
     runs = short_runs("fig-6.1a", densities=(6,), seeds=2 * together)
     with ThreadPoolExecutor(own_workers) as executor:
         results = by_digest(sweep(runs, jobs, executor=executor))

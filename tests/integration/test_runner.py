@@ -17,6 +17,7 @@ import pytest
 
 from kswarms.agents.common.columns import RECORDED_TABLES
 from kswarms.model.game_model import GameModel
+from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.runs import processes
 from kswarms.scenarios.runs.errors import RunError
 from kswarms.scenarios.runs.outcome import Failure
