@@ -142,17 +142,16 @@ class Krembot(TimedAgent):
         """
         swarm = opponent.swarm
         self.close(now)
-        if self._is_over:  # the policy removed this robot while it learned
+        if self.index < 0:
             return
-        action = self.policy.choose(swarm)
+        action = self._action = self.policy.choose(swarm)
         if self._allowed is not None and action not in self._allowed:
             rule = f"choose({swarm}) must return an action of the game, not {action!r}"
             raise InputError("policy", self.policy_name, rule)
-        if self._is_over or opponent._is_over:
+        index, other = self.index, opponent.index
+        if index < 0 or other < 0:
             return
-        self._action = action
-        index = self.index
-        other = self._opponent[index] = opponent.index
+        self._opponent[index] = other
         fields: tuple[Any, ...] = ()
         if self._log is not None:
             x, y = self._states.positions[index].tolist()

@@ -18,22 +18,20 @@ from kswarms.agents.robot.state import ACTION
 class TimedAgent(ContinuousSpaceAgent):
     """An agent in continuous space that measures its times of action and program, and learns from them.
 
-    `index` is its row in the state arrays, `in_game` whether it still takes part. After its removal it keeps
-    its scores and a copy of its last state. The policy's method ``learn``, if there is one, is called at the
-    end of each conflict.
+    `index` is its row in the state arrays, −1 after its removal: it then keeps its scores and a copy of its
+    last state. The policy's method ``learn``, if there is one, is called at the end of each conflict.
     """
 
     # Slots, here and in `Krembot`, are faster than a dict of more than thirty attributes.
     __slots__ = (
         "_active", "_env", "_is_open", "_is_over", "_learn", "_log", "_open", "_open_t_a",
-        "_opponent_swarm", "_period", "_phase", "_since", "_states", "conflicts", "in_game", "index",
-        "policy", "t_a", "t_p",
+        "_opponent_swarm", "_period", "_phase", "_since", "_states", "conflicts", "index", "policy",
+        "t_a", "t_p",
     )
 
     def __init__(self, model: Host, index: int, policy: Policy, swarms: int) -> None:
         self._states = model.states
         self.index = index
-        self.in_game = True
         super().__init__(model.space, cast(Any, model))
         self.policy = policy
         self.t_a = [0] * swarms  # periods of completed actions, by the opponent's swarm
@@ -52,6 +50,11 @@ class TimedAgent(ContinuousSpaceAgent):
         self._opponent_swarm = -1  # swarm of the opponent of the latest conflict
         self._open: tuple[Any, ...] = ()  # first fields of the open `Conflict`, if conflicts are logged
         self._open_t_a = 0  # T(a) of the latest conflict (periods)
+
+    @property
+    def in_game(self) -> bool:
+        """Whether the robot is in the game."""
+        return self.index >= 0
 
     @property
     def position(self) -> Floats:
@@ -88,10 +91,9 @@ class TimedAgent(ContinuousSpaceAgent):
     def leave(self, now: int) -> None:
         """Stop at `now` (periods): close the open conflict and keep a copy of the state."""
         self.finish(now)
-        self.in_game = False
         self._states = self._states.copy_row(self.index)
         self._phase = self._states.phase
-        self.index = 0
+        self.index = -1  # the only row of the copy
         self.space = None  # type: ignore[assignment]  # as in Mesa
 
     @property
