@@ -91,7 +91,7 @@ def test_version_and_help(capsys: pytest.CaptureFixture[str]) -> None:
         ("run fig-6.1a --seeds 1.5", "seeds='1.5': must be a valid integer"),
         ("run fig-6.1a --record robots,", "record='': must be among conflicts, robots, trajectory"),
         ("run fig-6.1a --out taken/below", "out='taken/below': must be a writable directory"),
-        ("run fig-6.1a --speed 3", "option='--speed': must be one of --all, --densities, "),
+        ("run fig-6.1a --speed 3", "option='--speed': must be one of --all, --allow-mixed, "),
         ("run fig-6.1a --progress dots", "progress='dots': must be one of 'bar', 'json', 'none'"),
         ("status nowhere", "results='nowhere': must be a directory with a ledger.sqlite of kswarms"),
         ("show", "id=None: is required"),

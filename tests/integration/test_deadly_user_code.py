@@ -91,8 +91,8 @@ HIDDEN = {
     "random": "random.random() < 0.5",
     "numpy": "int(np.random.random() < 0.5)",
     "counter": "Mine.chosen // 3 % 2",
-    "clock": "int(time.time()) // 5 % 2",
-    "hashes of texts": "hash('fight') // 8 % 2",
+    "clock": "int(time.time() / 1e4 * 2 ** (self.own % 9)) % 2",
+    "hashes of texts": "hash(str(self.own)) // 8 % 2",
 }
 """Expressions of an action that depend on more than the conflict and the seed."""
 STATEFUL = "its two trial games differ: does it use global random numbers or keep state between robots?"
