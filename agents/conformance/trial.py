@@ -20,7 +20,7 @@ STATEFUL = "its two trial games differ: does it use global random numbers or kee
 """Rule that a policy breaks if the same robots with the same seed act differently."""
 
 
-def try_policy(spec: PolicySpec, setting: Setting, robots: int = 1, conflicts: int = 7) -> str:
+def try_policy(spec: PolicySpec, setting: Setting, robots: int = 1, conflicts: int = 19) -> str:
     """Exercise the user-defined parts of a policy, so that errors surface before the game.
 
     A policy with a text plays two equal trial games, which must agree. A class or factory without a text

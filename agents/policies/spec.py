@@ -9,7 +9,7 @@ robots of a swarm.
 import copy
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache, partial
+from functools import cached_property, lru_cache, partial
 from pathlib import Path
 from typing import Any, Self
 
@@ -91,10 +91,11 @@ class PolicySpec:
     @property
     def runs_user_code(self) -> bool:
         """Whether the policy, its reward or its rule comes from outside the package."""
-        return self.given is not None or bool(self.references())
+        return self.given is not None or bool(self.references)
 
-    def references(self) -> dict[str, str]:
-        """Return the references to user-defined classes, by the field that has them."""
+    @cached_property
+    def references(self) -> Mapping[str, str]:
+        """References to user-defined classes, by the field that has them."""
         named = {"policy": self.name}
         for part in LEARNER_DEFAULTS:
             if isinstance(text := self.arguments.get(part), str):
@@ -106,13 +107,12 @@ class PolicySpec:
 
         Of a user-defined class only the form of its reference is checked. Raises an `InputError`.
         """
-        references = self.references()
-        for named_by, reference in references.items():
+        for named_by, reference in self.references.items():
             check_reference(named_by, reference)
         if self.given is not None:
             check_factory(self.name, self.given, {})
         elif not is_reference(self.name):
-            own = [part for part in LEARNER_DEFAULTS if f"policy.{part}" in references]
+            own = [part for part in LEARNER_DEFAULTS if f"policy.{part}" in self.references]
             built_in = {part: LEARNER_DEFAULTS[part] for part in own if self.learner_part(part)}
             (self.with_arguments(**built_in) if built_in else self).build(setting)
 
@@ -153,7 +153,7 @@ class PolicySpec:
 
     def code_files(self) -> list[Path]:
         """Return the files with user-defined code of the policy, its reward and its rule."""
-        return [path for each in self.references().items() for path in sources(*each)]
+        return [path for each in self.references.items() for path in sources(*each)]
 
     def learner_part(self, part: str) -> Call | None:
         """Return the ``reward`` or ``rule`` (`part`) of a learner; None for other policies."""

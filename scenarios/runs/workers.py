@@ -112,8 +112,10 @@ def time_limit(seconds: float | None) -> Iterator[None]:
         faulthandler.dump_traceback_later(seconds + EXIT_TIMEOUT, exit=True, file=nowhere)
         signal.setitimer(signal.ITIMER_REAL, seconds)
         try:
-            yield
-        finally:
-            signal.setitimer(signal.ITIMER_REAL, 0)
+            try:
+                yield
+            finally:
+                signal.setitimer(signal.ITIMER_REAL, 0)
+        finally:  # also if the signal arrives just before its timer is stopped
             faulthandler.cancel_dump_traceback_later()
             signal.signal(signal.SIGALRM, previous)

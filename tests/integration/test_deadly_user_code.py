@@ -109,7 +109,7 @@ def test_hidden_state_is_detected_when_runs_are_planned(index: str) -> None:
     "policy", ["mine.py:Mine", "learner(reward='mine.py:MyReward')", "learner(rule='mine.py:MyRule')"]
 )
 def test_hidden_state_is_detected_when_a_model_is_built(policy: str) -> None:
-    runs_of(HIDDEN["counter"], at_import="random.seed(1)")
+    runs_of(HIDDEN["counter"], at_import="random.seed(1); np.random.seed(1)")
     with pytest.raises(InputError, match=re.escape(STATEFUL)):
         ForagingModel(n=6, policies=["avoid", policy])
 

@@ -51,7 +51,7 @@ from kswarms.agents.learning.selection_rules import Rule
 
 class Faulty(Rule):
     def prefer(self, bandit, rng):
-        return 0 if bandit.choices < 8 else FAULT  # the trial of a model is shorter
+        return 0 if bandit.choices < 20 else FAULT  # the trial has 19 conflicts
 """
 SCENARIO = """
 id = "faulty"
@@ -60,7 +60,7 @@ densities = [30]
 seeds = 2
 [[conditions]]
 duration = 60
-learning = 60
+learning = 300
 swarms = [{ policy = "avoid" }, { policy = "POLICY" }]
 """
 RUN = ["run", "mine.toml", "--jobs", "1", "--quiet", "--no-figures"]
