@@ -157,7 +157,7 @@ class Session(Playback):
 def _references(policy: PolicyLike) -> Iterator[str]:
     """Yield the references to user-defined classes and the files of a policy."""
     for spec in parse_policies(policy):
-        yield from spec.references().values()
+        yield from spec.references.values()
         if (file := spec.arguments.get("file")) is not None:
             yield str(file)
 
