@@ -18,6 +18,10 @@ from kswarms.analysis.text_tables import TextTable
 
 MANIFEST_FILE: Final = "manifest.json"
 _LIBRARIES: Final = ("kswarms", "matplotlib", "networkx", "numpy", "pandas", "pyarrow", "scipy", "seaborn")
+_MIXED: Final = (
+    "The runs were played by different versions of Python, numpy or numba, or on different machines. "
+    "Equal runs may differ in their last digits."
+)
 
 
 def libraries_part() -> Part:
@@ -67,7 +71,8 @@ def _manifest_parts(content: dict[str, Any]) -> list[Part]:
     lines = "\n".join(f"{key}: {value}" for key, value in content.items() if key not in long)
     parts = [Part("manifest", f"Manifest ({MANIFEST_FILE})", preformatted=lines)]
     for key, value in long.items():
-        parts.append(Part(f"manifest-{key}", f"Manifest: {key}", preformatted=_entry_text(value)))
+        texts = [_MIXED] if key == "environments" and len(value) > 1 else []
+        parts.append(Part(f"manifest-{key}", f"Manifest: {key}", texts, preformatted=_entry_text(value)))
     return parts
 
 

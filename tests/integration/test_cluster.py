@@ -1,7 +1,9 @@
 """Studies on a Dask cluster of two processes: the same tables as with local workers, and no lost runs."""
 
+import json
 import os
 import signal
+import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -9,6 +11,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
+import pyarrow.parquet as pq
 import pytest
 from distributed import Client, LocalCluster
 
@@ -99,6 +102,27 @@ def test_closing_a_sweep_removes_its_tasks_from_the_cluster(cluster: LocalCluste
             next(played)
             wait_until(lambda: client.run_on_scheduler(tasks) > 30, "few tasks are on their way")
             played.close()
+        wait_until(lambda: client.run_on_scheduler(tasks) == 0, "tasks are left")
+
+
+@pytest.mark.usefixtures("empty_directory")
+def test_sigterm_ends_a_sweep_on_a_cluster_and_keeps_finished_runs(cluster: LocalCluster) -> None:
+    def tasks(dask_scheduler: Any) -> int:
+        return len(dask_scheduler.tasks)
+
+    words = ["run", "fig-6.2", "--densities", "50", "--seeds", "500", "--no-figures", "--progress", "json"]
+    command = [sys.executable, "-m", "kswarms.scenarios.cli", *words]
+    command += ["--scheduler", cluster.scheduler_address]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        assert json.loads(process.stderr.readline())["done"] == 1
+        process.send_signal(signal.SIGTERM)
+        err = process.communicate(timeout=30)[1]
+    assert process.returncode == 143
+    assert err.splitlines()[-1] == "kswarms: interrupted by SIGTERM"
+    assert "Traceback" not in err
+    assert 1 <= len(pq.read_table("results/runs.parquet")) / 2 < 500
+    with Client(cluster) as client:
         wait_until(lambda: client.run_on_scheduler(tasks) == 0, "tasks are left")
 
 

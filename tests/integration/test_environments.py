@@ -19,7 +19,7 @@ from kswarms.scenarios.runs.errors import RunError
 from kswarms.scenarios.runs.outcome import environment
 from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.study import Study
-from tests.helpers.tiny_study import RUN, TINY, read_tables
+from tests.helpers.tiny_study import PLAIN_RUN, RUN, TINY, read_tables
 
 pytestmark = pytest.mark.usefixtures("tiny_file")
 
@@ -61,13 +61,13 @@ def test_runs_of_another_environment_are_refused(part: str, capsys: pytest.Captu
 
 def test_mixed_runs_are_allowed_on_request_and_shown(capsys: pytest.CaptureFixture[str]) -> None:
     other = other_environment("numpy 9.9.9")
-    assert invoke([*RUN, "--seeds", "1"]) == 0
+    assert invoke([*PLAIN_RUN, "--seeds", "1"]) == 0
     assert invoke(["status", "results"]) == 0
     shown = capsys.readouterr().out
     assert f"played with: {environment()}, 4 runs\n" in shown
     assert "mixed:" not in shown
     change_environment_of_runs("results", other)
-    assert invoke([*RUN, "--seeds", "2", "--allow-mixed"]) == 0
+    assert invoke([*PLAIN_RUN, "--seeds", "2", "--allow-mixed"]) == 0
     assert f"has runs of other code, {other}" in capsys.readouterr().err
     assert invoke(["status", "results"]) == 0
     shown = capsys.readouterr().out
@@ -76,6 +76,8 @@ def test_mixed_runs_are_allowed_on_request_and_shown(capsys: pytest.CaptureFixtu
     assert "mixed:" in shown
     manifest = json.loads(Path("results/manifest.json").read_text())
     assert manifest["environments"] == {other: 4, environment(): 4}
+    assert invoke(["report", "results"]) == 0
+    assert "were played by different versions" in Path("results/report.html").read_text()
 
 
 @pytest.mark.usefixtures("fresh_environment")
