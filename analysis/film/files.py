@@ -2,6 +2,8 @@
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
+from errno import EIO
 from importlib.util import find_spec
 from itertools import chain
 from pathlib import Path
@@ -65,11 +67,17 @@ def _write_mp4(path: Path, images: Iterator[Image.Image], fps: int) -> None:
     name = f"file:{path}"  # otherwise a colon in the path ends the name of a protocol
     encoder = imageio_ffmpeg.write_frames(name, first.size, **settings)
     encoder.send(None)
+    sent = written = 0
     try:
         for image in chain([first], images):
             encoder.send(image.tobytes())
+            sent += 1
     finally:
         encoder.close()
+    with suppress(RuntimeError):  # the encoder reports no errors, not even a full disk
+        written, _ = imageio_ffmpeg.count_frames_and_secs(name)
+    if written != sent:
+        raise OSError(EIO, f"The encoder wrote {written} of {sent} frames")
 
 
 def _write_gif(path: Path, images: Iterator[Image.Image], fps: int) -> None:

@@ -67,7 +67,7 @@ def _middles(start: pd.Series) -> np.ndarray:
 
 
 def preferences(robots: pd.DataFrame) -> pd.DataFrame:
-    """Return the arms of each learner at the end, from `robots.parquet`; `InputError` if no robot learned.
+    """Return the arms of each learner at the end, from `robots.parquet`; `InputError` if none tried an action.
 
     The result has one row for each `run` (if given), `swarm`, `opponent_swarm`, `robot` (int64) and tried
     `action` (str), with `q` (float64, reward per second) and `learned` (bool): whether it is the best action.
@@ -75,10 +75,10 @@ def preferences(robots: pd.DataFrame) -> pd.DataFrame:
     robots = check_frame(robots, "robots", ["swarm", "robot", "arms"])
     keys = [name for name in ("run", "swarm", "robot") if name in robots]
     arms = robots[[*keys, "arms"]].explode("arms").dropna(subset="arms").reset_index(drop=True)
-    if arms.empty:
-        raise InputError("robots", "no arms", "must be of a game with a learner")
-    fields = pd.DataFrame(arms["arms"].tolist())[["opponent", "action", "q"]]
+    fields = pd.DataFrame(arms["arms"].tolist(), columns=["opponent", "action", "q"])
     rows = pd.concat([arms[keys], fields.rename(columns={"opponent": "opponent_swarm"})], axis=1)
     rows = rows.dropna(subset="q")
+    if rows.empty:
+        raise InputError("robots", "no arms", "must be of a game with a learner that tried an action")
     best = rows.groupby([*keys, "opponent_swarm"])["q"].transform("max")
     return rows.assign(learned=rows["q"] == best)

@@ -180,9 +180,9 @@ def _emergence_part(condition: RecordedCondition, conflicts: pd.DataFrame, name:
 
 
 def robots_parts(directory: Path, condition: RecordedCondition) -> Iterator[tuple[str, Part]]:
-    """Yield (``emergence``, part) with the final Q of each robot, if any robot learned."""
+    """Yield (``emergence``, part) with the final Q of each robot, if any robot tried an action."""
     robots = read_robots(directory, condition.densest["run"])
-    if not robots["arms"].map(len).any():
+    if not any(arm["count"] for arms in robots["arms"] for arm in arms):
         return
     name = condition.densest_name
     part = Part(f"robots-{condition.id}", f"{condition.name}: robot by robot")
