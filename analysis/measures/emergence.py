@@ -67,7 +67,7 @@ def _middles(start: pd.Series) -> np.ndarray:
 
 
 def preferences(robots: pd.DataFrame) -> pd.DataFrame:
-    """Return the arms of each learner at the end, from `robots.parquet`; `InputError` if none tried an action.
+    """Return the arms of each learner at the end, from `robots.parquet`; `InputError` if none tried one.
 
     The result has one row for each `run` (if given), `swarm`, `opponent_swarm`, `robot` (int64) and tried
     `action` (str), with `q` (float64, reward per second) and `learned` (bool): whether it is the best action.
