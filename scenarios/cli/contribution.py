@@ -8,7 +8,7 @@ import typer
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.limits import MAX_SEEDS
 from kswarms.scenarios.catalogue.selection import select_scenarios
-from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, complete_scenario_ids, parse_path
+from kswarms.scenarios.cli.options import CPUS, FirstSeed, Jobs, RunLimit, complete_scenario_ids, parse_path
 from kswarms.scenarios.cli.printing import print_line, print_table
 from kswarms.scenarios.cli.progress import play_tracked
 
@@ -36,6 +36,7 @@ def contribution(
         typer.Option(help="Phases without the robot: learning and game, or the measured game only."),
     ] = "learning",
     jobs: Jobs = CPUS,
+    run_limit: RunLimit = None,
     out: Annotated[
         Path, typer.Option(parser=parse_path, metavar="DIR", help="Results directory.")
     ] = Path("results"),
@@ -62,7 +63,7 @@ def contribution(
     from kswarms.scenarios.runs.trial import require_trials
 
     numbers = parse_robots(game, robots)
-    require_trials([game])
+    require_trials([game], run_limit)
     prepare_table(out)
     found = contributions(
         game,
@@ -70,7 +71,7 @@ def contribution(
         range(first_seed, first_seed + seeds),
         absent_from,
         label=(scenario.id, name),
-        play=lambda runs: play_tracked(runs, jobs, RECORD, "playing"),
+        play=lambda runs: play_tracked(runs, jobs, RECORD, "playing", run_limit),
         time_sud=time_sud,
     )
     print_line(f"table:  {write_table(out, found)}")

@@ -6,7 +6,7 @@ from typing import Annotated, Final
 import typer
 
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.limits import MAX_JOBS, MAX_SEED
+from kswarms.agents.common.limits import MAX_JOBS, MAX_RUN_LIMIT, MAX_SEED
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selection import DEFAULT_N, DEFAULT_SCENARIO, select_scenarios
 from kswarms.scenarios.cli.cpus import available_cpus
@@ -21,6 +21,15 @@ Jobs = Annotated[
 ]
 AllowMixed = Annotated[
     bool, typer.Option("--allow-mixed", help="Mix runs of different versions of Python, numpy and numba.")
+]
+RunLimit = Annotated[
+    float | None,
+    typer.Option(
+        min=0.001,
+        max=MAX_RUN_LIMIT,
+        metavar="SECONDS",
+        help="Time limit of each run by the clock; a longer run fails. [default: none]",
+    ),
 ]
 FirstSeed = Annotated[int, typer.Option(min=0, max=MAX_SEED, help="First seed.")]
 

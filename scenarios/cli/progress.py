@@ -128,12 +128,12 @@ def _bar(count: Count) -> Iterator[Callable[[str], None]]:
 
 
 def play_tracked(
-    runs: Sequence[Run], jobs: int, record: str, label: str
+    runs: Sequence[Run], jobs: int, record: str, label: str, run_limit: float | None = None
 ) -> Generator[tuple[Run, Outcome], None, None]:
     """Play runs, as `kswarms.scenarios.runs.sweep.play_all` does, and show a progress bar."""
     from kswarms.scenarios.runs.sweep import play_all
 
-    with closing(play_all(runs, jobs, record)) as played:
+    with closing(play_all(runs, jobs, record, run_limit=run_limit)) as played:
         yield from track(played, label, len(runs))
 
 

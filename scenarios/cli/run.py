@@ -9,11 +9,18 @@ import typer
 
 from kswarms.agents.common.columns import RECORDED_TABLES
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.limits import MAX_RUN_LIMIT
 from kswarms.agents.common.quoting import for_shell
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selection import select_scenarios, with_densities_and_seeds
-from kswarms.scenarios.cli.options import CPUS, AllowMixed, FirstSeed, Jobs, complete_ids, parse_path
+from kswarms.scenarios.cli.options import (
+    CPUS,
+    AllowMixed,
+    FirstSeed,
+    Jobs,
+    RunLimit,
+    complete_ids,
+    parse_path,
+)
 from kswarms.scenarios.cli.printing import print_line, print_table, warn
 from kswarms.scenarios.cli.progress import ProgressStyle
 from kswarms.scenarios.description.text import parse_integers, split_words
@@ -57,10 +64,7 @@ def run(
             parser=parse_path, metavar="DIR", help="Results directory; a study in it is resumed."
         ),
     ] = Path("results"),
-    run_limit: Annotated[
-        float | None,
-        typer.Option(metavar="SECONDS", help="Time limit of each run by the clock; a longer run fails."),
-    ] = None,
+    run_limit: RunLimit = None,
     record: Annotated[
         str, typer.Option(metavar="NAME,...", help=f"Additional tables: {', '.join(RECORDED_TABLES)}.")
     ] = "",
@@ -94,8 +98,6 @@ def run(
     for name in records:
         if name not in RECORDED_TABLES:
             raise InputError("record", name, f"must be among {', '.join(RECORDED_TABLES)}")
-    if run_limit is not None and not 0 < run_limit < MAX_RUN_LIMIT:
-        raise InputError("run_limit", run_limit, f"must be above 0 and below {MAX_RUN_LIMIT:g} (s)")
     if run_limit is not None and scheduler is not None:
         raise InputError("run_limit", run_limit, "must not be given with --scheduler")
     if left_out:

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from kswarms.agents.common.quoting import for_shell
-from kswarms.scenarios.cli.options import Trust
+from kswarms.scenarios.cli.options import RunLimit, Trust
 from kswarms.scenarios.cli.printing import format_duration, print_columns, print_line, warn
 from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.ledger import Ledger
@@ -50,6 +50,7 @@ def replay(
     directory: Directory,
     run_digest: Annotated[str, typer.Argument(metavar="RUN", help="Digest: column `run` of a table.")],
     trust: Trust = False,
+    run_limit: RunLimit = None,
 ) -> int:
     """Play one run again, print its results and compare them with DIR. It writes nothing.
 
@@ -64,7 +65,7 @@ def replay(
     if not trust:
         require_no_user_code(run)
     print_line(str(run))
-    ((_, outcome),) = play_all([run])
+    ((_, outcome),) = play_all([run], run_limit=run_limit)
     for row in (*outcome.swarms, *outcome.policies):
         print_line("  " + ", ".join(f"{name}={value!r}" for name, value in row.items()))
     if kept is None:

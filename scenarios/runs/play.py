@@ -1,6 +1,7 @@
 """Play one run."""
 
 import time
+import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -9,7 +10,7 @@ from kswarms.model.recorder import policy_rows
 from kswarms.scenarios.runs.errors import RunError
 from kswarms.scenarios.runs.outcome import Failure, Outcome
 from kswarms.scenarios.runs.run import Run, code_version, require_unchanged
-from kswarms.scenarios.runs.workers import time_limit
+from kswarms.scenarios.runs.workers import TimeLimitError, time_limit
 
 
 def play(run: Run, record: str = "") -> Outcome:
@@ -76,5 +77,9 @@ def attempt_in_worker(
     try:
         with time_limit(run_limit):
             return attempt(run, record, code)
+    except TimeLimitError as error:
+        calls = traceback.extract_tb(error.__traceback__)[:-1]  # the last is that of the signal's handler
+        trace = "".join(["Traceback (most recent call last):\n", *traceback.format_list(calls)])
+        return Failure(f"TimeLimitError: {error}", trace), time.thread_time() - started
     except BaseException as error:  # noqa: BLE001  # user-defined code may raise anything
         return Failure.of(error), time.thread_time() - started
