@@ -39,7 +39,8 @@ def network_figure(network: nx.Graph, title: str = "") -> Figure:
     swarm = nx.get_node_attributes(network, "swarm")
     robots = sorted(network, key=lambda robot: (swarm[robot], robot))
     times = nx.to_numpy_array(network, nodelist=robots, weight="time")
-    longest, shortest = times.max(), times[times > 0].min()
+    positive = times[times > 0]
+    longest, shortest = (positive.max(), positive.min()) if positive.size else (1.0, 1.0)
     with new_figure(title, width=11.0, height=5.6) as figure:
         circle, matrix = figure.subplots(1, 2)
         positions = nx.circular_layout(robots)

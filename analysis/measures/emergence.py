@@ -22,8 +22,9 @@ def learning_conflicts(conflicts: pd.DataFrame) -> pd.DataFrame:
     """Return conflicts of the learning phase decided by a bandit; `InputError` if no swarm learned."""
     conflicts = check_frame(conflicts, "conflicts", [*BANDIT, "phase", "robot", "start", "action", "q"])
     learned = conflicts[conflicts["q"].notna()]
-    if learned.empty:
-        raise InputError("conflicts", "no row with a Q", "must be of a game with a learner")
+    if "learning" not in set(learned["phase"]):
+        rule = "must be of the learning phase of a game with a learner"
+        raise InputError("conflicts", "no row with a Q", rule)
     bandits = pd.MultiIndex.from_frame(learned[BANDIT].drop_duplicates())
     decided = pd.MultiIndex.from_frame(conflicts[BANDIT]).isin(bandits)
     return conflicts[decided & (conflicts["phase"] == "learning")]

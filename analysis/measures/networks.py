@@ -37,6 +37,9 @@ def meeting_network(conflicts: pd.DataFrame) -> nx.Graph:
     conflicts = check_frame(conflicts, "conflicts", columns)
     if "run" in conflicts and conflicts["run"].nunique() > 1:
         raise InputError("conflicts", f"{conflicts['run'].nunique()} runs", "must be of one game")
+    if (alone := conflicts["robot"] == conflicts["opponent"]).any():
+        robot = int(conflicts["robot"][alone].iloc[0])
+        raise InputError("conflicts column opponent", robot, "must be another robot")
     network = nx.Graph()
     robots = np.concatenate([conflicts["robot"], conflicts["opponent"]]).tolist()
     of_robots = np.concatenate([conflicts["swarm"], conflicts["opponent_swarm"]]).tolist()
@@ -71,7 +74,7 @@ def describe_network(network: nx.Graph) -> dict[str, float]:
         "met": pairs / (robots * (robots - 1) / 2),
         "meetings": sum(meetings for *_, meetings in network.edges(data="meetings")),
         "time": float(time.sum() / 2),
-        "inter": float(1 - np.trace(time) / time.sum()),
+        "inter": float(1 - np.trace(time) / time.sum()) if time.any() else math.nan,
         "degree": 2 * pairs / robots,
         "strength": float(time.sum() / robots),
         "assortativity": _assortativity(mixing_matrix(network, None)),
@@ -98,9 +101,11 @@ def mixing_matrix(network: nx.Graph, weight: str | None) -> np.ndarray:
 
 def _assortativity(mixing: np.ndarray) -> float:
     """Return Newman's assortativity, r = (Σ e_kk − Σ a_k²) / (1 − Σ a_k²), NaN for a single swarm."""
+    if not mixing.any():
+        return math.nan
     shares = mixing / mixing.sum()
     by_chance = float((shares.sum(axis=1) ** 2).sum())
-    return float((np.trace(shares) - by_chance) / (1 - by_chance)) if by_chance < 1 else float("nan")
+    return float((np.trace(shares) - by_chance) / (1 - by_chance)) if by_chance < 1 else math.nan
 
 
 def jams(conflicts: pd.DataFrame, every: float = 1.0) -> pd.DataFrame:

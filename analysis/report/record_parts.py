@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
+from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.quoting import for_file_name
 from kswarms.analysis.figures import emergence, heat_maps, networks
 from kswarms.analysis.film.painter import ArenaLayout
@@ -106,7 +107,7 @@ def conflict_parts(
         yield "networks", _network_part(directory, condition, game, name)
         yield "maps", _map_part(condition, measured, arena_of)
     with_learning = conflicts[conflicts["run"] == shown["run"]]
-    if with_learning["q"].notna().any():
+    if (with_learning["q"].notna() & (with_learning["phase"] == "learning")).any():
         yield "emergence", _emergence_part(condition, with_learning, name)
 
 
@@ -182,13 +183,15 @@ def _emergence_part(condition: RecordedCondition, conflicts: pd.DataFrame, name:
 def robots_parts(directory: Path, condition: RecordedCondition) -> Iterator[tuple[str, Part]]:
     """Yield (``emergence``, part) with the final Q of each robot, if any robot tried an action."""
     robots = read_robots(directory, condition.densest["run"])
-    if not any(arm["count"] for arms in robots["arms"] for arm in arms):
-        return
     name = condition.densest_name
+    try:
+        figure = emergence.preferences_figure(robots, name)
+    except InputError:  # no robot learned
+        return
     part = Part(f"robots-{condition.id}", f"{condition.name}: robot by robot")
     part.add_figure(
         part.id,
-        emergence.preferences_figure(robots, name),
+        figure,
         f"Scatter chart of the value Q of each action at the end, robot by robot, {name}.",
         f"Differences between the robots of a swarm: Q of every arm at the end of the game, {name}.",
     )

@@ -22,8 +22,9 @@ def test_the_network_has_a_line_for_each_pair_and_the_matrix_has_its_time() -> N
     assert encode(figure, "png")
 
 
-def test_a_network_of_one_pair_can_be_drawn() -> None:
+def test_networks_of_one_pair_and_without_time_can_be_drawn() -> None:
     assert encode(network_figure(meeting_network(MET.head(1))), "svg")
+    assert encode(network_figure(meeting_network(MET.assign(t_a=0.0))), "svg")
 
 
 def test_jams_are_drawn_over_time() -> None:

@@ -14,8 +14,9 @@ def test_only_conflicts_decided_by_bandits_in_the_learning_phase_count() -> None
     rows = learning_conflicts(LEARNING)
     assert len(rows) == 40
     assert set(zip(rows["swarm"], rows["opponent_swarm"], strict=True)) == {(2, 1)}
-    with pytest.raises(InputError, match="must be of a game with a learner"):
-        learning_conflicts(MET)
+    for other in (MET, LEARNING.assign(phase="game"), LEARNING.assign(q=float("nan"))):
+        with pytest.raises(InputError, match="must be of the learning phase of a game with a learner"):
+            learning_conflicts(other)
 
 
 def test_choices_are_shares_by_swarm_or_by_robot() -> None:
@@ -46,5 +47,7 @@ def test_preferences_leave_out_untried_arms() -> None:
         [3, "flight", 0.3, True],
     ]
     assert len(preferences(robots(("a", "b")))) == 6
-    with pytest.raises(InputError, match="must be of a game with a learner"):
-        preferences(robots()[:1])
+    untried = [{"opponent": 1, "action": "fight", "reward": 0.0, "time": 0.0, "count": 0.0, "q": None}]
+    for other in (robots()[:1], robots()[:1].assign(arms=[untried])):
+        with pytest.raises(InputError, match="must be of a game with a learner"):
+            preferences(other)

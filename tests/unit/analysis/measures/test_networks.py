@@ -97,3 +97,12 @@ def test_jams_refuse_invalid_arguments() -> None:
         jams(MET, every=0)
     with pytest.raises(InputError, match="must hold at least one conflict"):
         jams(MET.head(0))
+
+
+def test_conflicts_without_time_have_no_assortativity_by_time() -> None:
+    statistics = describe_network(meeting_network(MET.assign(t_a=0.0)))
+    assert statistics["time"] == 0
+    assert math.isnan(statistics["inter"])
+    assert math.isnan(statistics["assortativity_time"])
+    with pytest.raises(InputError, match="conflicts column opponent=0: must be another robot"):
+        meeting_network(MET.assign(opponent=MET["robot"]))
