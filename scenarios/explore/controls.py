@@ -105,7 +105,7 @@ def _slider(
 
 def _scenario(session: Session, act: Act) -> None:
     solara.v.Combobox(
-        label="Scenario, or a TOML file",
+        label="Scenario, or a TOML file" if session.allow_code else "Scenario",
         v_model=session.source,
         items=list(CATALOGUE),
         on_v_model=lambda text: act(lambda: session.load(text or "")),

@@ -39,7 +39,7 @@ class Session(Playback):
     """
 
     def __init__(self, start: str | Run, allow_code: bool = False) -> None:
-        self._allow_code = allow_code
+        self.allow_code = allow_code
         self._start = start
         self._own_references: set[str] = set()  # code and files that `start` names
         self.show_sectors = False  # conflict sectors of all robots
@@ -115,13 +115,13 @@ class Session(Playback):
 
     def _game(self) -> Game:
         """Return the game of the form; raise `InputError` if it is invalid or names other code."""
-        for swarm in self.form.swarms if not self._allow_code else ():
+        for swarm in self.form.swarms if not self.allow_code else ():
             if not self._own_references.issuperset(_references(swarm["policy"])):
                 raise InputError("policy", swarm["policy"], _NO_CODE)
         return self.form.game()
 
     def _open(self, source: str) -> None:
-        if source.endswith(".toml") and source != self._start and not self._allow_code:
+        if source.endswith(".toml") and source != self._start and not self.allow_code:
             raise InputError("id", source, _NO_CODE)
         scenarios = select_scenarios([source])
         if source == self._start:

@@ -19,6 +19,7 @@ import ipyvuetify  # comes with solara
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.learning.selection_rules import UCB
 from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.explore import page
 from kswarms.scenarios.explore.session import Session
 from kswarms.scenarios.runs.run import Run, digest
@@ -188,6 +189,21 @@ def test_a_page_is_served_at_the_printed_address(monkeypatch: pytest.MonkeyPatch
         pytest.raises(InputError, match="must be a free port"),
     ):
         server.serve(new_session, taken.getsockname()[1], False, announced.put)
+
+
+@pytest.mark.filterwarnings("ignore:websockets.legacy is deprecated:DeprecationWarning")
+@pytest.mark.parametrize("options", [[], ["--allow-code"]])
+def test_the_controls_name_code_only_with_the_option(
+    options: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from kswarms.scenarios.explore import server
+
+    sessions: list[Session] = []
+    monkeypatch.setattr(server, "serve", lambda new_session, *_: sessions.append(new_session()))
+    assert invoke(["explore", "fig-6.1c", *options]) == 0
+    sessions[0].change_swarm(0, policy=f"{tmp_path}/missing.py:Mine")
+    assert ("must not name code or a file" in sessions[0].error) is (options == [])
+    assert ("No such file" in sessions[0].error) is (options == ["--allow-code"])
 
 
 def test_a_page_that_is_closed_ends_its_thread_and_frees_its_game(

@@ -233,6 +233,38 @@ def test_a_game_that_cannot_be_rewound_keeps_its_state_until_it_can(
     assert session.player.time <= 1.0
 
 
+ODD_TEXTS = ["", "x" * 5000, "\0", "a\nb", "\ud800", "+" * 500, "(" * 2000, f"attack({'[' * 3000}", "x:"]
+ODD_NUMBERS = [-1, 2**70, 10**4000, math.nan, math.inf, 1e308, 5e-324]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        *(lambda own, text=text: own.change_swarm(0, policy=text) for text in ODD_TEXTS),
+        *(lambda own, text=text: own.load(text) for text in ODD_TEXTS),
+        *(lambda own, text=text: own.change(parameters=text) for text in ODD_TEXTS),
+        *(lambda own, text=text: own.change_absent(text) for text in ODD_TEXTS[1:]),
+        *(lambda own, value=value: own.change(side=value) for value in ODD_NUMBERS),
+        *(lambda own, value=value: own.change(duration=value) for value in ODD_NUMBERS),
+        *(lambda own, value=value: own.change(supply=value) for value in ODD_NUMBERS),
+        *(lambda own, value=value: own.change(seed=value) for value in ODD_NUMBERS),
+        *(lambda own, value=value: own.change_swarm(0, share=value) for value in ODD_NUMBERS[:3]),
+        *(lambda own, value=value: own.go_to(value) for value in (math.nan, math.inf, -math.inf)),
+    ],
+)
+def test_an_odd_input_is_reported_in_one_short_line(
+    session: Session, change: Callable[[Session], None]
+) -> None:
+    kept = session.player
+    change(session)
+    assert session.error.partition("=")[0].isidentifier()  # not: the game failed
+    assert "\n" not in session.error
+    assert len(session.error) < 500
+    assert session.player is kept
+    session.step()
+    assert session.player.time == pytest.approx(0.1)
+
+
 def test_rewinding_keeps_the_error_of_an_invalid_control(session: Session) -> None:
     session.player.advance(3.0)
     session.change_swarm(0, policy="atack")
