@@ -41,6 +41,12 @@ def shorten(value: object) -> str:
     return _cut(printable(text))
 
 
+def require_type(field: str, value: object, kind: type, allowed: str) -> None:
+    """Raise an `InputError` unless a value is of a type; booleans are no numbers."""
+    if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
+        raise InputError(field, value, allowed)
+
+
 def printable(text: str) -> str:
     """Return a text as one line: line breaks become spaces, other control characters escape sequences."""
     return for_terminal(re.sub(r"\s*[\n\r]\s*", " ", text))

@@ -7,6 +7,13 @@ from pathlib import Path
 from kswarms.agents.common.errors import InputError
 
 
+def to_path(field: str, path: object) -> Path:
+    """Return a path that a user gives as text or as a path; raise an `InputError` for anything else."""
+    if not isinstance(path, str | os.PathLike) or "\0" in str(path):
+        raise InputError(field, path, "must be a path")
+    return Path(path)
+
+
 def read_input_file(field: str, path: Path, limit: int) -> bytes:
     """Return the content of a regular file.
 

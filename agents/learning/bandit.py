@@ -2,6 +2,9 @@
 
 import math
 
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.limits import MAX_ACTIONS
+
 
 class Bandit:
     """A robot's experience of conflicts with one swarm.
@@ -26,6 +29,8 @@ class Bandit:
     __slots__ = ("choices", "count", "reward", "time")
 
     def __init__(self, arms: int) -> None:
+        if not isinstance(arms, int) or isinstance(arms, bool) or not 1 <= arms <= MAX_ACTIONS:
+            raise InputError("arms", arms, f"must be an integer from 1 to {MAX_ACTIONS}")
         self.reward = [0.0] * arms
         self.time = [0.0] * arms
         self.count = [0.0] * arms

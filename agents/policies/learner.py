@@ -6,7 +6,7 @@ from typing import Any, Final, Literal
 from numpy.random import Generator
 
 from kswarms.agents.actions import Action
-from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.errors import InputError, require_type
 from kswarms.agents.learning.bandit import Bandit
 from kswarms.agents.learning.rewards import Reward, make_reward
 from kswarms.agents.learning.selection_rules import Rule, make_rule
@@ -60,6 +60,7 @@ class Learner:
         rule: str | Rule = LEARNER_DEFAULTS["rule"],
         otherwise: str = "",
     ) -> None:
+        require_type("setting", setting, Setting, "must be a kswarms.Setting")
         if about not in ("inter", "intra", "both"):
             raise InputError("about", about, "must be inter, intra or both")
         self.swarm = setting.swarm

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from kswarms.agents.actions import Action
-from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.errors import InputError, require_type
 from kswarms.agents.learning.rewards import make_reward
 from kswarms.agents.learning.selection_rules import make_rule
 from kswarms.agents.policies.fixed import FixedPolicy
@@ -241,6 +241,7 @@ def make_policy(policy: str | Factory, setting: Setting) -> Policy:
     InputError
         If there is no such policy, it is not exactly one, an argument is not allowed, or user code fails.
     """
+    require_type("setting", setting, Setting, "must be a kswarms.Setting")
     (spec,) = parse_policies(policy)
     return spec.build(setting)
 

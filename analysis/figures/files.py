@@ -9,7 +9,8 @@ from typing import Final, NamedTuple
 from matplotlib.figure import Figure
 
 from kswarms.agents.common.atomic_files import output_path
-from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.errors import InputError, require_type
+from kswarms.agents.common.input_files import to_path
 from kswarms.analysis.figures.style import default_settings
 
 DOTS_PER_INCH: Final = 150
@@ -69,6 +70,8 @@ def save_figure(figure: Figure, path: Path) -> None:
     OSError
         Writing fails; an existing file is unchanged.
     """
+    require_type("figure", figure, Figure, "must be a matplotlib figure")
+    path = to_path("path", path)
     write_file(path, encode(figure, path.suffix.removeprefix(".").lower()), "figures")
 
 

@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.errors import InputError, require_type
 from kswarms.agents.common.quoting import for_file_name
 from kswarms.analysis.figures.files import save_figure
 from kswarms.analysis.figures.style import (
@@ -155,6 +155,8 @@ def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool =
 
     Parameters and errors are those of `pucks_over_n`.
     """
+    require_type("scenario", scenario, str, "must be the id of a scenario")
+    require_type("title", title, str, "must be a text")
     draw = {("sud",): sud_over_n, TIME_SHARES: time_shares}.get(shown_quantities(scenario), pucks_over_n)
     return draw(runs, scenario, title, detail)
 

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.input_files import read_input_file
+from kswarms.agents.common.input_files import read_input_file, to_path
 from kswarms.agents.common.limits import MAX_TEXT_FILE
 from kswarms.analysis.findings.claims import Claim
 from kswarms.analysis.statistics.intervals import CONFIDENCE
@@ -61,7 +61,7 @@ def read_findings(path: Path) -> tuple[Finding, ...]:
     InputError
         The file cannot be read, is not TOML, or has invalid or other content.
     """
-    content = read_input_file("findings", path, MAX_TEXT_FILE)
+    content = read_input_file("findings", to_path("findings", path), MAX_TEXT_FILE)
     try:
         text = content.decode()
     except UnicodeDecodeError as error:

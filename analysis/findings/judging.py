@@ -6,6 +6,7 @@ undecided if the interval contains a bound of the region, or if there are too fe
 
 import math
 
+from kswarms.agents.common.errors import require_type
 from kswarms.analysis.findings.claims import Agreement, Claim, Compare, Overtake, Peak, Share, Trend
 from kswarms.analysis.findings.comparing import judge_at_each, judge_over_all
 from kswarms.analysis.findings.curve_claims import judge_overtaking, judge_peak, judge_trend
@@ -25,6 +26,8 @@ def judge(finding: Finding, results: Results) -> Verdict:
         The results have a game twice, or policies without games; or the claim does not name one of several
         opponents.
     """
+    require_type("finding", finding, Finding, "must be a kswarms.Finding")
+    require_type("results", results, Results, "must be a kswarms.Results, see read_results")
     try:
         outcome = _judge_claim(finding.claim, ClaimData(finding.claim, results), finding.confidence)
     except NoDataError as missing:

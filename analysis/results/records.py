@@ -6,6 +6,8 @@ from pathlib import Path
 import pandas as pd
 
 from kswarms.agents.common.columns import column_names
+from kswarms.agents.common.errors import require_type
+from kswarms.agents.common.input_files import to_path
 from kswarms.analysis.results.tables import read_table
 
 
@@ -22,6 +24,9 @@ def read_conflicts(directory: Path, runs: Collection[str] | None = None, seen: b
     `runs` are the runs to read, by default all. With `seen`, the column `seen` (robots that the sensors read)
     is included; it is most of the file. Errors are those of `read_table`.
     """
+    directory = to_path("results", directory)
+    if runs is not None:
+        require_type("runs", runs, Collection, "must be a collection of digests of runs")
     columns = [name for name in column_names("conflicts") if seen or name != "seen"]
     return read_table(directory, "conflicts", columns, runs)
 

@@ -4,7 +4,7 @@ import tomllib
 from pathlib import Path
 
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.input_files import read_input_file
+from kswarms.agents.common.input_files import read_input_file, to_path
 from kswarms.agents.common.limits import MAX_TEXT_FILE
 from kswarms.scenarios.description.scenario import Scenario
 
@@ -17,6 +17,7 @@ def read_scenarios(path: Path) -> list[Scenario]:
     InputError
         If the file cannot be read, or a scenario is invalid.
     """
+    path = to_path("id", path)
     source = read_input_file("id", path, MAX_TEXT_FILE)
     try:
         content = tomllib.loads(source.decode("utf-8-sig"))

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from kswarms import __version__
+from kswarms.agents.common.input_files import to_path
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.runs.errors import RunError
 from kswarms.scenarios.runs.outcome import Outcome, Result, environment
@@ -52,7 +53,7 @@ class Study:
     """
 
     def __init__(self, directory: Path, command: str = "", allow_mixed: bool = False) -> None:
-        self.directory = directory
+        self.directory = to_path("out", directory)
         self.tables: list[Path] = []
         self._command = command
         self._allow_mixed = allow_mixed
