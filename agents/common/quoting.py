@@ -34,6 +34,19 @@ def for_terminal(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
+def for_toml(document: str) -> str:
+    r"""Return a TOML document with characters that are not printable as escapes; its content is the same.
+
+    Such characters can only be in strings, and TOML Kit writes strings with escapes.
+
+    Examples
+    --------
+    >>> print(for_toml('title = "\x9b1m"'))
+    title = "\U0000009b1m"
+    """
+    return "".join(c if c.isprintable() or c == "\n" else f"\\U{ord(c):08x}" for c in document)
+
+
 def for_shell(word: str) -> str:
     r"""Return a word quoted for a shell, in one line.
 

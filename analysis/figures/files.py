@@ -54,13 +54,13 @@ def encode_all(figure: Figure) -> EncodedFigure:
     return EncodedFigure(files, width, height)
 
 
-def save_figure(figure: Figure, path: Path) -> None:
+def save_figure(figure: Figure, path: str | Path) -> None:
     """Write a figure to a PNG or SVG file.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
-    path : Path
+    path : Path or str
         The suffix is the format. Missing folders are created.
 
     Raises

@@ -163,7 +163,7 @@ def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool =
 
 def write_figures(
     source: str | Path | Sweep | Results,
-    out: Path,
+    out: str | Path,
     scenarios: Sequence[str] | None = None,
     titles: Mapping[str, str] | None = None,
 ) -> list[Path]:
@@ -195,6 +195,6 @@ def write_figures(
     paths = []
     for scenario in present if scenarios is None else scenarios:
         if scenario in present:
-            paths.append(out / f"{for_file_name(scenario)}.png")
+            paths.append(Path(out) / f"{for_file_name(scenario)}.png")
             save_figure(figure_of(runs, scenario, (titles or {}).get(scenario, "")), paths[-1])
     return paths

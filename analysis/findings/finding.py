@@ -53,7 +53,7 @@ class _FindingsFile(FrozenModel):
         return self
 
 
-def read_findings(path: Path) -> tuple[Finding, ...]:
+def read_findings(path: str | Path) -> tuple[Finding, ...]:
     """Read findings from a TOML file with an array of tables ``findings``.
 
     Raises

@@ -18,7 +18,9 @@ def recorded_runs(directory: Path, table: str) -> set[str]:
     return set(read_table(directory, table, ["run"])["run"])
 
 
-def read_conflicts(directory: Path, runs: Collection[str] | None = None, seen: bool = False) -> pd.DataFrame:
+def read_conflicts(
+    directory: str | Path, runs: Collection[str] | None = None, seen: bool = False
+) -> pd.DataFrame:
     """Read `conflicts.parquet` of `kswarms run --record conflicts --out`: one row for each begun conflict.
 
     `runs` are the runs to read, by default all. With `seen`, the column `seen` (robots that the sensors read)
@@ -31,11 +33,11 @@ def read_conflicts(directory: Path, runs: Collection[str] | None = None, seen: b
     return read_table(directory, "conflicts", columns, runs)
 
 
-def read_robots(directory: Path, runs: Collection[str]) -> pd.DataFrame:
+def read_robots(directory: str | Path, runs: Collection[str]) -> pd.DataFrame:
     """Read `robots.parquet`: one row for each robot at the end of its game; `arms` is an array of dicts."""
     return read_table(directory, "robots", column_names("robots"), runs)
 
 
-def read_contributions(directory: Path) -> pd.DataFrame:
+def read_contributions(directory: str | Path) -> pd.DataFrame:
     """Read `contribution.parquet` of `kswarms contribution --out`: one row for each game and robot."""
     return read_table(directory, "contribution")

@@ -9,12 +9,16 @@ import pandas as pd
 
 from kswarms.agents.common.columns import TABLES
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.input_files import to_path
 from kswarms.agents.common.tables import arrow_table, check_table, read_metadata
 from kswarms.agents.common.tables import read_table as read_arrow_table
 
 
 def read_table(
-    directory: Path, table: str, columns: Sequence[str] | None = None, runs: Collection[str] | None = None
+    directory: str | Path,
+    table: str,
+    columns: Sequence[str] | None = None,
+    runs: Collection[str] | None = None,
 ) -> pd.DataFrame:
     """Read a table of a results directory and check it against the schema.
 
@@ -26,6 +30,7 @@ def read_table(
     InputError
         The directory or the file is missing or unreadable; or as in `check_table`.
     """
+    directory = to_path("results", directory)
     if not directory.is_dir():
         raise InputError("results", str(directory), "must be a directory that `kswarms run` wrote")
     path = directory / f"{table}.parquet"

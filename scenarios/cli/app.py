@@ -17,6 +17,7 @@ from typer.core import TyperGroup
 from kswarms import __version__
 from kswarms.agents.common.errors import InputError, printable
 from kswarms.scenarios.cli.parser_errors import to_input_error
+from kswarms.scenarios.cli.printing import print_lines
 from kswarms.scenarios.cli.terminal import flush_output, prepare_streams
 from kswarms.scenarios.runs.errors import RunError
 from kswarms.scenarios.signals import signals_as_interrupts
@@ -112,7 +113,7 @@ def _run_command(words: Sequence[str]) -> int:
     except OSError as error:
         return _print_error(str(error), 1)
     except RunError as error:
-        typer.echo(error.trace, err=True)
+        print_lines(error.trace, err=True)
         return _print_error(str(error), 1)
     except typer.TyperException as error:
         return _print_error(str(to_input_error(error, words)), error.exit_code)

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from kswarms.agents.common.quoting import for_toml
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selection import select_scenarios
 from kswarms.scenarios.cli.options import complete_ids
@@ -57,6 +58,5 @@ def show(
     Example: kswarms show fig-6.1c
     """
     scenarios = select_scenarios([source])
-    typer.echo(
-        toml_of(scenarios) if len(scenarios) > 1 or source in TABLES else scenarios[0].to_toml(), nl=False
-    )
+    text = toml_of(scenarios) if len(scenarios) > 1 or source in TABLES else scenarios[0].to_toml()
+    typer.echo(for_toml(text), nl=False)

@@ -16,6 +16,11 @@ def print_line(text: str, err: bool = False) -> None:
     typer.echo(for_terminal(text), err=err)
 
 
+def print_lines(text: str, err: bool = False) -> None:
+    """Print a text of several lines as `print_line` prints each of them."""
+    typer.echo(_quote_lines(text), err=err)
+
+
 def warn(message: str) -> None:
     """Print a message on standard error."""
     print_line(f"kswarms: {message}", err=True)

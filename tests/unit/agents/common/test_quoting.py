@@ -1,9 +1,11 @@
 """Quoting of hostile names for terminals, shells, spreadsheets, Markdown and file names."""
 
 import subprocess
+import tomllib
 from pathlib import Path
 
 import pytest
+import tomlkit
 
 from kswarms.agents.common.quoting import (
     LONGEST_FILE_NAME,
@@ -12,6 +14,7 @@ from kswarms.agents.common.quoting import (
     for_markdown,
     for_shell,
     for_terminal,
+    for_toml,
 )
 
 NAMES = {
@@ -92,3 +95,10 @@ def test_a_shell_reads_a_quoted_word_back(word: str) -> None:
     command = ["bash", "-c", f"printf %s {for_shell(word)}"]
     found = subprocess.run(command, capture_output=True, env={"LC_ALL": "C.UTF-8"}, check=True).stdout
     assert found.decode("utf-8", "surrogateescape") == word
+
+
+def test_a_quoted_toml_document_has_the_same_content() -> None:
+    content = {"title": "\x1b[2J\x9b\u202e\u2028\U000e0001\t\xa0Δ\\", "swarms": [{"policy": "a\nb"}]}
+    document = for_toml(tomlkit.dumps(content))
+    assert all(line.isprintable() for line in document.split("\n"))
+    assert tomllib.loads(document) == content
