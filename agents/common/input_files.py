@@ -1,5 +1,6 @@
 """Reading of files that others may have made: regular files of bounded size only."""
 
+import errno
 import os
 import stat
 from pathlib import Path
@@ -11,6 +12,11 @@ def to_path(field: str, path: object) -> Path:
     """Return a path that a user gives as text or as a path; raise an `InputError` for anything else."""
     if not isinstance(path, str | os.PathLike) or "\0" in str(path):
         raise InputError(field, path, "must be a path")
+    try:
+        os.lstat(path)
+    except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            raise InputError(field, path, "must be a shorter path") from error
     return Path(path)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import pandas as pd
 
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.input_files import to_path
 from kswarms.analysis.results.sweeps import Sweep, tables_of_sweep
 from kswarms.analysis.results.tables import read_table
 
@@ -62,7 +63,7 @@ def read_results(
     """
     if not isinstance(source, str | Path):
         return Results(*tables_of_sweep(source, scenario, by))
-    directory = Path(source)
+    directory = to_path("results", source)
     learned = (directory / "policies.parquet").exists()
     return Results(read_runs(directory), read_policies(directory) if learned else None)
 

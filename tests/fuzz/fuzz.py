@@ -1,7 +1,7 @@
 """Give random mistaken inputs to kswarms: ``python -m tests.fuzz.fuzz --inputs 5000``.
 
-Each input must end within a minute, with exit status 0, 1 or 2 and no traceback, or with an `InputError`. A
-refusal is one line and writes nothing; no temporary file is left. The inputs are determined by their names.
+Each input must end in five minutes, with exit status 0, 1 or 2 and no traceback, or with an `InputError`.
+A refusal is one line and writes nothing; no temporary file is left. An input is determined by its name.
 """
 
 import argparse

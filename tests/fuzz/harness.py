@@ -21,7 +21,7 @@ import matplotlib.pyplot as plt
 from kswarms import InputError
 from kswarms.scenarios.cli import invoke
 
-LIMIT: Final = 60
+LIMIT: Final = 300
 """Time limit of one input (s)."""
 
 
