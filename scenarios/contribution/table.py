@@ -14,6 +14,7 @@ from kswarms.agents.common.columns import TABLES
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.tables import arrow_schema, read_table
 from kswarms.scenarios.study.directory import CONTRIBUTIONS_FILE, make_directory
+from kswarms.scenarios.study.lock import brief_lock
 
 FILE: Final = CONTRIBUTIONS_FILE
 SCHEMA: Final = arrow_schema(TABLES["contribution"])
@@ -40,16 +41,17 @@ def write_table(directory: Path, rows: Sequence[dict[str, Any]]) -> Path:
     """
     path = directory / FILE
     table = pa.Table.from_pylist(list(rows), schema=SCHEMA)
-    if path.exists():
-        earlier = _read(path, "out")
-        replaced = pa.array([True] * len(earlier))
-        for name in _KEY:
-            replaced = pc.and_(replaced, pc.equal(earlier[name], rows[0][name]))
-        table = pa.concat_tables([earlier.filter(pc.invert(replaced)), table])
-    table = table.sort_by([(name, "ascending") for name in (*_KEY, "seed", "robot")])
-    # Arrow opens no path that is not UTF-8.
-    with atomic_path(path) as temporary, temporary.open("wb") as file:
-        pq.write_table(table, file)
+    with brief_lock(directory):
+        if path.exists():
+            earlier = _read(path, "out")
+            replaced = pa.array([True] * len(earlier))
+            for name in _KEY:
+                replaced = pc.and_(replaced, pc.equal(earlier[name], rows[0][name]))
+            table = pa.concat_tables([earlier.filter(pc.invert(replaced)), table])
+        table = table.sort_by([(name, "ascending") for name in (*_KEY, "seed", "robot")])
+        # Arrow opens no path that is not UTF-8.
+        with atomic_path(path) as temporary, temporary.open("wb") as file:
+            pq.write_table(table, file)
     return path
 
 

@@ -52,6 +52,24 @@ def directory_lock(directory: Path, command: str) -> Iterator[None]:
             yield
         finally:
             os.ftruncate(file, 0)
+            fcntl.flock(file, fcntl.LOCK_UN)  # see `brief_lock`
+
+
+@contextmanager
+def brief_lock(directory: Path) -> Iterator[None]:
+    """Hold a lock during a short change of a file in a directory; another process waits for it.
+
+    It is independent of `directory_lock`. A file system without locks gives no protection.
+    """
+    descriptor = os.open(directory, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    try:
+        with suppress(OSError):
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        with suppress(OSError):  # closing keeps the lock if a forked process has the file too
+            fcntl.flock(descriptor, fcntl.LOCK_UN)
+        os.close(descriptor)
 
 
 def lock_holder(directory: Path) -> str:

@@ -7,6 +7,7 @@ import pytest
 
 from kswarms.agents.common.errors import shorten
 from kswarms.scenarios.cli import invoke
+from kswarms.scenarios.cli.app import COMMANDS
 
 pytestmark = pytest.mark.usefixtures("empty_directory")
 
@@ -93,6 +94,48 @@ def test_every_option_for_numbers_refuses_other_texts(capsys: pytest.CaptureFixt
             tried.add(f"{command} --{option}")
     assert {"run --seeds", "explore --port", "film --sheet", "conflicts --from", "calibrate --jobs"} < tried
     assert not list(Path.cwd().iterdir())
+
+
+def test_every_option_for_a_path_expands_the_home_directory(capsys: pytest.CaptureFixture[str]) -> None:
+    tried = set()
+    for command in COMMANDS:
+        assert invoke([command, "--help"]) == 0
+        argument = [] if command == "calibrate" else ["fig-6.1a"]
+        for option in re.findall(r"--(\S+) (?:DIR|FILE|TOML) ", capsys.readouterr().out):
+            for value, rule in (
+                ("~nobody-has-this-name/x", "names an unknown user; "),
+                ("", "must not be empt"),
+            ):
+                assert invoke([command, *argument, f"--{option}={value}"]) == 2
+                (line,) = capsys.readouterr().err.splitlines()
+                assert line.startswith(f"kswarms: {option}={value!r}: {rule}")
+            tried.add(f"{command} --{option}")
+    outputs = {f"{command} --out" for command in ("run", "contribution", "calibrate", "film", "report")}
+    assert outputs | {"report --files", "report --findings"} <= tried
+    assert not list(Path.cwd().iterdir())
+
+
+def test_outputs_go_to_the_home_directory(monkeypatch: pytest.MonkeyPatch) -> None:
+    home = Path.cwd() / "home"
+    home.mkdir()
+    monkeypatch.setenv("HOME", str(home))
+    film = ["film", "fig-6.1c", "--n", "6", "--to", "1", "--sheet", "1"]
+    assert invoke(["run", "fig-6.1c", "--densities", "6", *QUICK, "--no-figures", "--out=~/study"]) == 0
+    assert invoke([*film, "--out=~/sheet.png"]) == 0
+    assert {path.name for path in home.iterdir()} == {"study", "sheet.png"}
+    assert [path.name for path in Path.cwd().iterdir()] == ["home"]
+
+
+def test_a_film_replaces_a_file_only_if_it_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    film = ["film", "fig-6.1c", "--n", "6", "--to", "1", "--sheet", "1"]
+    for name in ("fig-6.1c-n6-seed0.png", "mine.png"):
+        Path(name).write_text("precious")
+    assert invoke(film) == 2
+    error = "out='fig-6.1c-n6-seed0.png': exists; give its name with --out to replace it"
+    assert capsys.readouterr().err == f"kswarms: {error}\n"
+    assert Path("fig-6.1c-n6-seed0.png").read_text() == "precious"
+    assert invoke([*film, "--out", "mine.png"]) == 0
+    assert Path("mine.png").read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize("title", ["$x^{ costs $", "漢字", "../../a/b", "<b>&amp;", "_x"])

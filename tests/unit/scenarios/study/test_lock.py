@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from kswarms.agents.common.errors import InputError
-from kswarms.scenarios.study.lock import LOCK_FILE, directory_lock, lock_holder
+from kswarms.scenarios.study.lock import LOCK_FILE, brief_lock, directory_lock, lock_holder
 
 
 def test_the_holder_is_known_while_the_lock_is_held(tmp_path: Path) -> None:
@@ -52,6 +52,23 @@ def test_a_file_system_without_locks_is_refused(tmp_path: Path, monkeypatch: pyt
     with pytest.raises(InputError, match=r"cannot be locked .Function not implemented.; use a dir"):
         directory_lock(tmp_path, "").__enter__()
     assert lock_holder(tmp_path) == ""
+
+
+def test_a_brief_lock_waits_for_another_process(tmp_path: Path) -> None:
+    reading, writing = os.pipe()
+    with brief_lock(tmp_path):
+        child = os.fork()
+        if child == 0:
+            os.write(writing, b"start ")
+            with brief_lock(tmp_path):
+                os.write(writing, b"second ")
+                os._exit(0)
+        assert os.read(reading, 6) == b"start "
+        os.write(writing, b"first ")
+    os.waitpid(child, 0)
+    os.close(writing)
+    assert os.read(reading, 100) == b"first second "
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_full_disk_does_not_prevent_the_lock(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
