@@ -1,6 +1,7 @@
 """Play runs on a Dask cluster."""
 
 import asyncio
+import logging
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
@@ -43,8 +44,20 @@ def dask_executor(address: str) -> Iterator[Executor]:
         reason = " ".join(str(error).split()) or type(error).__name__
         rule = f"must be the address of a Dask scheduler ({reason})"
         raise InputError("scheduler", address, rule) from error
-    with client:
+    with _without_logs("distributed.client"), client:
         yield _ClusterExecutor(client)
+
+
+@contextmanager
+def _without_logs(name: str) -> Iterator[None]:
+    """Silence a logger. Dask logs a traceback if the scheduler exits; `sweep` reports this in one line."""
+    logger = logging.getLogger(name)
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
 
 
 def _require_scheduler(address: str) -> "Security":

@@ -4,6 +4,7 @@ import gc
 import shutil
 import socket
 import subprocess
+import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,6 +17,8 @@ from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.runs import dask as dask_module
 from kswarms.scenarios.runs.dask import dask_executor
+from kswarms.scenarios.runs.errors import RunError
+from kswarms.scenarios.runs.executor import count_workers
 from kswarms.scenarios.runs.sweep import sweep
 from tests.helpers.short_runs import by_digest, short_runs
 
@@ -201,3 +204,30 @@ def test_a_port_that_answers_something_else_is_refused(
     for client in kept:
         client.close()
     assert capfd.readouterr().err == ""
+
+
+# Workers that come and go.
+
+
+def test_workers_that_join_later_are_counted(plain: LocalCluster, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dask_module, "_MIN_WORKERS", 1)
+    monkeypatch.setattr(dask_module, "_COUNT_PERIOD", 0.0)
+    with dask_executor(plain.scheduler_address) as executor:
+        assert count_workers(executor) == 1
+        plain.scale(3)
+        plain.wait_for_workers(3)
+        assert count_workers(executor) == 3
+
+
+def test_a_scheduler_that_exits_ends_the_sweep_in_one_line(caplog: pytest.LogCaptureFixture) -> None:
+    words = ["--host", "127.0.0.1", "--port", "0", "--dashboard-address", "127.0.0.1:0"]
+    command = [sys.executable, "-m", "distributed.cli.dask_scheduler", *words]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as scheduler:
+        assert scheduler.stderr is not None
+        line = next(line for line in scheduler.stderr if "Scheduler at:" in line)
+        with dask_executor(line.split()[-1]) as executor:
+            played = sweep(short_runs("fig-6.1a"), executor=executor)
+            threading.Timer(0.5, scheduler.kill).start()
+            with pytest.raises(RunError, match="all workers exited"):
+                next(played)
+    assert [record.message for record in caplog.records if record.levelname == "ERROR"] == []
