@@ -13,16 +13,18 @@ _ENDING: Final = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 @contextmanager
-def signals_as_interrupts() -> Iterator[list[signal.Signals]]:
-    """Raise `KeyboardInterrupt` with the signal's name for each signal; yield the list of signals so far."""
-    arrived: list[signal.Signals] = []
+def signals_as_interrupts(arrived: list[signal.Signals]) -> Iterator[None]:
+    """Raise `KeyboardInterrupt` with the signal's name for each signal, and add the signal to a list.
+
+    Signals may arrive at any moment, so the beginning and the end of this context can raise, too.
+    """
 
     def interrupt(number: int, _frame: FrameType | None) -> None:
         arrived.append(signal.Signals(number))
         raise KeyboardInterrupt(arrived[-1].name)
 
     with _handle(interrupt):
-        yield arrived
+        yield
 
 
 @contextmanager

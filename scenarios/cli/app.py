@@ -91,12 +91,12 @@ def invoke(arguments: Sequence[str] | None = None) -> int:
     `arguments` are the words after ``kswarms``; the default is the arguments of this process. SIGTERM and
     SIGHUP end a command as Ctrl-C does. The status is then 128 plus the number of the signal.
     """
-    words = sys.argv[1:] if arguments is None else arguments
-    with signals_as_interrupts() as arrived:
-        try:
-            status = _run_command(words)
-        except KeyboardInterrupt:  # outside typer
-            status = _INTERRUPTED
+    arrived: list[signal.Signals] = []
+    try:
+        with signals_as_interrupts(arrived):
+            status = _run_command(sys.argv[1:] if arguments is None else arguments)
+    except KeyboardInterrupt:  # outside typer
+        status = _INTERRUPTED
     if status and arrived:
         by = "" if arrived[0] == signal.SIGINT else f" by {arrived[0].name}"
         return _print_error(f"interrupted{by}", 128 + arrived[0])

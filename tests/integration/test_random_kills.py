@@ -22,13 +22,20 @@ SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
 
 def end_after(delay: float, number: signal.Signals, words: Sequence[str]) -> int:
     """Send a signal to a command after some seconds; return its exit status, negative if it was killed."""
+    reader, writer = os.pipe()
     child = os.fork()  # a new process would spend most of the moments on its imports
     if child == 0:
         status = 1
         try:
+            os.write(writer, b"started")
             status = invoke(words)
+        except KeyboardInterrupt:  # before or after the command
+            status = 130
         finally:
             os._exit(status)
+    os.read(reader, 1)  # not within `fork`, where Python would ignore Ctrl-C
+    os.close(reader)
+    os.close(writer)
     time.sleep(delay)
     os.kill(child, number)
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])

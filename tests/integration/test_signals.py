@@ -89,6 +89,28 @@ def test_a_signal_does_not_interrupt_the_writing_of_tables(
     assert not list(Path("results").glob(".unfinished*"))
 
 
+@pytest.mark.parametrize("moment", ["install", "restore"])
+def test_a_signal_while_handlers_are_changed_is_no_traceback(
+    moment: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    real, calls = signal.signal, []
+
+    def change(number: int, handler: Any) -> Any:
+        before = real(number, handler)
+        calls.append(number)
+        if len(calls) == (2 if moment == "install" else 4):
+            signal.raise_signal(signal.SIGTERM)
+        return before
+
+    before = [signal.getsignal(number) for number in STATUS]
+    with monkeypatch.context() as patch:
+        patch.setattr(signal, "signal", change)
+        assert invoke(["list"]) == 143
+    for number, handler in zip(STATUS, before, strict=True):
+        signal.signal(number, handler)
+    assert capsys.readouterr().err == "kswarms: interrupted by SIGTERM\n"
+
+
 def test_an_ignored_signal_stays_ignored(before_games: Callable[[Fault], None]) -> None:
     before_games(lambda model: signal.raise_signal(signal.SIGHUP))
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as `nohup` does
