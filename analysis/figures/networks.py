@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from kswarms.analysis.colours import swarm_colour
 from kswarms.analysis.figures.style import CONDITION_COLOURS, legend_below, new_figure
-from kswarms.analysis.measures.networks import MIN_JAM_SIZE
+from kswarms.analysis.measures.networks import MIN_JAM_SIZE, require_edges
 
 _WINDOW: Final = 15
 """Number of samples in the moving mean of jams."""
@@ -36,6 +36,7 @@ def network_figure(network: nx.Graph, title: str = "") -> Figure:
         grey, edges between swarms black. Right: a matrix of the same times (s) on a logarithmic scale. Robots
         are sorted by swarm; pairs that never met are grey.
     """
+    require_edges(network)
     swarm = nx.get_node_attributes(network, "swarm")
     robots = sorted(network, key=lambda robot: (swarm[robot], robot))
     times = nx.to_numpy_array(network, nodelist=robots, weight="time")

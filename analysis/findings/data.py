@@ -10,9 +10,10 @@ from kswarms.agents.theory.times import share_of_time
 from kswarms.analysis.findings.claims import Claim
 from kswarms.analysis.findings.quantity import LEARNED, Quantity
 from kswarms.analysis.results.runs import Results
-from kswarms.analysis.results.tables import require_columns
+from kswarms.analysis.results.tables import check_frame, require_columns
 from kswarms.analysis.statistics.intervals import Values
 
+_GAME = ["n", "seed", "swarm"]
 _TIMES = ["t_a_intra", "t_a_inter", "t_p"]
 _COUNTS = ["pucks", "conflicts_intra", "conflicts_inter", "size"]
 
@@ -89,11 +90,17 @@ def _by_seed(values: pd.Series) -> pd.DataFrame:
 
 
 def _select_curve(rows: pd.DataFrame, quantity: Quantity, columns: Sequence[str]) -> pd.DataFrame:
-    require_columns(rows, "results", ["scenario", "condition", "n", "seed", "swarm", *columns])
+    require_columns(rows, "results", ["scenario", "condition", *_GAME, *columns])
     mask = (rows["scenario"] == quantity.scenario) & (rows["condition"] == quantity.condition)
     if quantity.swarm is not None:
         mask &= rows["swarm"] == quantity.swarm
-    return rows[mask]
+    selected = rows[mask]
+    game = check_frame(selected[_GAME], "runs", _GAME)
+    for name in columns:
+        values = pd.to_numeric(selected[name], errors="coerce")
+        if not np.isfinite(values.to_numpy(np.float64, na_value=np.nan)).all():
+            raise InputError(f"results column {name}", quantity.scenario, "must have finite numbers only")
+    return selected.assign(**{name: game[name] for name in _GAME})
 
 
 def _sum_swarms(results: Results, quantity: Quantity) -> pd.DataFrame:

@@ -54,6 +54,12 @@ def meeting_network(conflicts: pd.DataFrame) -> nx.Graph:
     return network
 
 
+def require_edges(network: nx.Graph) -> None:
+    """Raise an `InputError` if a network has no edge."""
+    if not network.number_of_edges():
+        raise InputError("network", "no edges", "must have at least one edge")
+
+
 def describe_network(network: nx.Graph) -> dict[str, float]:
     """Return summary statistics of a network of meetings with at least one edge.
 
@@ -63,6 +69,7 @@ def describe_network(network: nx.Graph) -> dict[str, float]:
     * `assortativity` by swarm-ID: of pairs; `assortativity_time`: of pairs weighted by time; `chance`: of a
       complete network, which is below 0 because no robot meets itself.
     """
+    require_edges(network)
     swarms = sorted(set(nx.get_node_attributes(network, "swarm").values()))
     sizes = np.array([sum(s == swarm for _, s in network.nodes(data="swarm")) for swarm in swarms], float)
     time = mixing_matrix(network, "time")

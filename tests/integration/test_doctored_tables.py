@@ -12,7 +12,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.figures.heat_maps import heat_map_figure
 from kswarms.analysis.figures.over_n import figure_of, write_figures
 from kswarms.analysis.figures.over_time import pucks_over_time
-from kswarms.analysis.findings import FINDINGS, judge
+from kswarms.analysis.findings import FINDINGS, judge, judge_all
 from kswarms.analysis.measures.conflict_density import conflict_density
 from kswarms.analysis.measures.contribution import select_contributions
 from kswarms.analysis.measures.emergence import choices, preferences
@@ -106,6 +106,9 @@ def test_functions_without_a_full_schema_need_their_columns() -> None:
             compare_with_argos(rows)
         with pytest.raises(InputError, match="must"):
             judge(FINDINGS[0], Results(rows))
+    for changes in ({"n": math.nan}, {"pucks": math.inf}, {"t_p": "many"}, {"seed": -1}):
+        with pytest.raises(InputError, match=f"column {next(iter(changes))}"):
+            judge_all(Results(RUNS.assign(**changes)))
     for samples in (None, pd.DataFrame({"time": ["a"], "pucks_1": [1]})):
         with pytest.raises(InputError, match="samples"):
             pucks_over_time(samples)

@@ -104,5 +104,7 @@ def test_conflicts_without_time_have_no_assortativity_by_time() -> None:
     assert statistics["time"] == 0
     assert math.isnan(statistics["inter"])
     assert math.isnan(statistics["assortativity_time"])
+    with pytest.raises(InputError, match="network='no edges'"):
+        describe_network(meeting_network(MET.iloc[:0]))
     with pytest.raises(InputError, match="conflicts column opponent=0: must be another robot"):
         meeting_network(MET.assign(opponent=MET["robot"]))
