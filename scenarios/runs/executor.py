@@ -4,6 +4,7 @@ from collections import deque
 from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from queue import Empty, SimpleQueue
+from time import monotonic
 from typing import Any, Final
 
 from kswarms.scenarios.runs.outcome import Failure, Outcome
@@ -41,6 +42,7 @@ def play_through(
     ended: SimpleQueue[Future[Any]] = SimpleQueue()
     playing: dict[Future[Any], Run] = {}
     broken = False
+    watched = monotonic()
     while True:
         while waiting and not broken and len(playing) < at_once():
             try:
@@ -52,11 +54,12 @@ def play_through(
                 future.add_done_callback(ended.put)
         if not playing:
             return
+        if watch is not None and monotonic() >= watched + WATCH_EVERY:
+            watched = monotonic()
+            watch([run for future, run in playing.items() if future.running()])
         try:
             future = ended.get(timeout=WATCH_EVERY)
         except Empty:
-            if watch is not None:
-                watch([run for future, run in playing.items() if future.running()])
             continue
         run = playing.pop(future)
         error = CancelledError() if future.cancelled() else future.exception()

@@ -2,7 +2,7 @@
 
 import logging
 from collections import Counter, deque
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Generator, Sequence
 from functools import partial
 from time import monotonic
 from typing import Final
@@ -11,7 +11,7 @@ from kswarms.scenarios.runs.executor import play_through
 from kswarms.scenarios.runs.outcome import Failure, Result
 from kswarms.scenarios.runs.play import attempt_in_worker
 from kswarms.scenarios.runs.run import Run, code_version
-from kswarms.scenarios.runs.workers import EXIT_TIMEOUT, new_workers
+from kswarms.scenarios.runs.workers import BLOCKED_AFTER, EXIT_TIMEOUT, Workers, new_workers
 
 GAMES_PER_WORKER: Final = 2500
 """Games per worker before it is replaced. Mesa keeps memory of each game, so workers grow."""
@@ -32,7 +32,7 @@ def play_in_processes(
     example. So all submitted runs are retried one at a time. A run fails after `run_limit` seconds.
     """
     task = partial(attempt_in_worker, record, code_version(), run_limit)
-    watch = suggest_limit() if run_limit is None else None
+    watch = Watch(run_limit)
     suspects: deque[Run] = deque()  # submitted runs of broken executors
     deaths: Counter[str] = Counter()
     while waiting or suspects:
@@ -45,7 +45,9 @@ def play_in_processes(
             batch, workers, at_once = deque(waiting.popleft() for _ in range(size)), jobs, 2 * jobs
         with new_workers(workers) as executor:
             began = monotonic()
-            for run, result, seconds in play_through(executor, batch, partial(int, at_once), task, watch):
+            for run, result, seconds in play_through(
+                executor, batch, partial(int, at_once), task, partial(watch, executor)
+            ):
                 if result is not None:
                     yield run, result, seconds
                     began = monotonic()
@@ -65,20 +67,29 @@ def play_in_processes(
             waiting.extendleft(reversed(batch))
 
 
-def suggest_limit() -> Callable[[Sequence[Run]], None]:
-    """Return a `watch` of `play_through` that suggests a time limit for the first long run."""
-    began: dict[str, float] = {}
-    suggested = False
+class Watch:
+    """Reaction to long runs: suggest a time limit once; if there is one, kill workers that are blocked."""
 
-    def watch(running: Sequence[Run]) -> None:
-        nonlocal suggested
+    def __init__(self, run_limit: float | None) -> None:
+        self._run_limit = run_limit
+        self._began: dict[str, float] = {}
+        self._suggested = False
+
+    def __call__(self, executor: Workers, running: Sequence[Run]) -> None:
+        """Look at the running runs; one more than there are workers may still wait for a worker."""
+        self._began = {run.digest: self._began.get(run.digest, monotonic()) for run in running}
         for run in running:
-            seconds = monotonic() - began.setdefault(run.digest, monotonic())
-            if not suggested and seconds > max(HINT_AFTER, _HINT_FACTOR * run.effort):
-                suggested = True
-                times = f"{seconds:.0f} s, over {_HINT_FACTOR} times its estimate"
-                logging.getLogger(__name__).warning(
-                    "kswarms: %s takes %s; --run-limit SECONDS ends such runs", run, times
-                )
+            seconds = monotonic() - self._began[run.digest]
+            if self._run_limit is None:
+                self._suggest_limit(run, seconds)
+            elif seconds > 2 * self._run_limit + BLOCKED_AFTER:
+                executor.kill()
+                return
 
-    return watch
+    def _suggest_limit(self, run: Run, seconds: float) -> None:
+        if not self._suggested and seconds > max(HINT_AFTER, _HINT_FACTOR * run.effort):
+            self._suggested = True
+            times = f"{seconds:.0f} s, over {_HINT_FACTOR} times its estimate"
+            logging.getLogger(__name__).warning(
+                "kswarms: %s takes %s; --run-limit SECONDS ends such runs", run, times
+            )

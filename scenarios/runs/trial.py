@@ -14,7 +14,7 @@ from kswarms.agents.streams import Streams
 from kswarms.model.description.game import Game
 from kswarms.scenarios.runs.outcome import Failure
 from kswarms.scenarios.runs.run import hash_file
-from kswarms.scenarios.runs.workers import TimeLimitError, new_workers, time_limit
+from kswarms.scenarios.runs.workers import BLOCKED_AFTER, TimeLimitError, new_workers, time_limit
 
 TRIAL_LIMIT: Final = 60.0
 """Time limit of a trial by the clock, loading of the code included (s)."""
@@ -97,7 +97,11 @@ def _try_in_new_process(trials: Sequence[Trial], limit: float, shift: float) -> 
             while waiting:
                 trial = waiting.pop()
                 try:
-                    yield executor.submit(_try, trial, limit).result()
+                    yield executor.submit(_try, trial, limit).result(limit + BLOCKED_AFTER)
+                except TimeoutError:  # a signal has stopped the process, for example
+                    executor.kill()
+                    yield Failure(f"policy={trial.policy!r}: its trial took longer than {limit:g} s")
+                    break
                 except BrokenExecutor:
                     executor.require_started()
                     yield Failure(f"policy={trial.policy!r}: its trial ended its worker process")

@@ -18,12 +18,17 @@ EXIT_TIMEOUT: Final = 5.0
 """Time that workers have to exit, and user-defined code to handle its `TimeLimitError`, before a kill (s)."""
 
 
+BLOCKED_AFTER: Final = 60.0
+"""Time beyond a limit after which a worker counts as blocked, for example stopped by a signal (s)."""
+
+
 class Workers(ProcessPoolExecutor):
     """An executor of `jobs` new worker processes."""
 
     def __init__(self, jobs: int) -> None:
         context = get_context("spawn")
         self._jobs = jobs
+        self._others = set(active_children())
         with _blocked_signals():  # the process that tracks resources starts here
             self._started = context.Event()
         super().__init__(jobs, context, _start_worker, (self._started,))
@@ -39,26 +44,26 @@ class Workers(ProcessPoolExecutor):
             reason = 'none started: is `if __name__ == "__main__"` missing?'
             raise InputError("jobs", self._jobs, f"needs worker processes, and {reason}")
 
+    def kill(self) -> None:
+        """Kill the processes, which breaks the executor."""
+        for worker in set(active_children()) - self._others:
+            worker.kill()
+
 
 @contextmanager
 def new_workers(jobs: int) -> Iterator[Workers]:
     """Yield an executor with new worker processes; they have ended when the context is left."""
-    others = set(active_children())
     executor = Workers(jobs)
-
-    def kill() -> None:
-        for worker in set(active_children()) - others:
-            worker.kill()
-
     try:
         yield executor
     except BaseException:
         # After Ctrl-C, or when the caller stops: do not wait for games that may take minutes.
         with deferred_signals():
-            kill()
+            executor.kill()
         raise
     finally:
-        killer = threading.Timer(EXIT_TIMEOUT, kill)  # threads or exit handlers of user-defined code may hang
+        # Threads or exit handlers of user-defined code may hang.
+        killer = threading.Timer(EXIT_TIMEOUT, executor.kill)
         killer.start()
         executor.shutdown(cancel_futures=True)
         killer.cancel()

@@ -1,6 +1,8 @@
 """User-defined code with hidden state, code that ends its process, and code that never returns."""
 
 import re
+import time
+from concurrent.futures import BrokenExecutor
 from multiprocessing import active_children
 from pathlib import Path
 
@@ -213,12 +215,35 @@ def test_a_limit_is_suggested_once_for_a_long_run(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     runs = expand([scenario("attack", seeds=2)])
-    watch = processes.suggest_limit()
-    for now in (0.0, 59.0, 61.0, 70.0):
-        monkeypatch.setattr(processes, "monotonic", lambda now=now: now)
-        watch(runs)
+    watch = processes.Watch(None)
+    with workers.new_workers(1) as executor:
+        for now in (0.0, 59.0, 61.0, 70.0):
+            monkeypatch.setattr(processes, "monotonic", lambda now=now: now)
+            watch(executor, runs)
     (line,) = caplog.messages
     assert line.startswith(f"kswarms: {runs[0]} takes 61 s, over 20 times its estimate; --run-limit SECONDS")
+
+
+def test_a_worker_that_is_blocked_beyond_the_limit_is_killed(monkeypatch: pytest.MonkeyPatch) -> None:
+    runs = expand([scenario("attack")])
+    watch = processes.Watch(10.0)
+    with workers.new_workers(1) as executor:
+        sleeping = executor.submit(time.sleep, 600)
+        for now in (0.0, 79.0):
+            monkeypatch.setattr(processes, "monotonic", lambda now=now: now)
+            watch(executor, runs)
+        assert not sleeping.done()
+        monkeypatch.setattr(processes, "monotonic", lambda: 81.0)
+        watch(executor, runs)
+        assert isinstance(sleeping.exception(), BrokenExecutor)
+
+
+def test_code_that_stops_its_process_fails_its_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(trial, "TRIAL_LIMIT", 0.5)
+    monkeypatch.setattr(trial, "BLOCKED_AFTER", 2.0)
+    runs = runs_of(construct="os.kill(os.getpid(), signal.SIGSTOP)")
+    assert failures(runs) == ["policy='mine.py:Mine': its trial took longer than 0.5 s"]
+    assert active_children() == []
 
 
 def test_a_study_of_deadly_code_has_failed_rows(capsys: pytest.CaptureFixture[str]) -> None:
