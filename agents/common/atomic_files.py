@@ -2,6 +2,7 @@
 
 import fcntl
 import os
+import re
 import secrets
 import stat
 from collections.abc import Collection, Generator
@@ -13,6 +14,7 @@ from typing import Final
 from kswarms.agents.common.errors import InputError
 
 TEMPORARY: Final = ".unfinished-"  # prefix of the names of temporary files
+_TEMPORARY_NAME: Final = re.compile(re.escape(TEMPORARY) + r"[0-9a-f]{16}(\..*)?", re.DOTALL)
 _LONGEST_SUFFIX: Final = 16  # characters of a temporary file's suffix; names have a limit
 
 
@@ -37,8 +39,9 @@ def atomic_path(path: Path) -> Generator[Path, None, None]:
 
 @contextmanager
 def output_path(path: Path, field: str) -> Generator[Path, None, None]:
-    """Yield a temporary path, as `atomic_path` does, after `check_output`."""
+    """Yield a temporary path, as `atomic_path` does, after `check_output` and `remove_temporary_files`."""
     check_output(path, field)
+    remove_temporary_files(path.parent)
     with atomic_path(path) as temporary:
         yield temporary
 
@@ -94,6 +97,8 @@ def remove_temporary_files(directory: Path) -> None:
     A file is in use if it is locked. This holds for processes of other machines too.
     """
     for temporary in directory.glob(f"{TEMPORARY}*"):
+        if not _TEMPORARY_NAME.fullmatch(temporary.name):
+            continue  # of the user
         with suppress(OSError):  # in use, a directory, a symbolic link, or not ours
             descriptor = os.open(temporary, os.O_RDWR | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
             try:

@@ -35,7 +35,7 @@ def make_directory(directory: Path, mark: str, files: Collection[str] = ()) -> N
     ------
     InputError
         If the directory is not writable; has files, but no main file of kswarms; has one of `files`, but
-        no `mark`; or if a file is a symbolic link or not regular.
+        no `mark`; or if a file or figure is a symbolic link or not regular.
     """
     check_directory(directory, "out", _MARKS)
     try:
@@ -44,15 +44,21 @@ def make_directory(directory: Path, mark: str, files: Collection[str] = ()) -> N
         if stat.S_ISDIR(modes.get(FIGURES, 0)):
             with TemporaryFile(dir=directory / FIGURES):
                 pass
+            for path in (directory / FIGURES).glob("*.png"):
+                _require_regular(path, path.lstat().st_mode)
     except OSError as error:
         raise InputError("out", str(directory), f"must be a writable directory ({error.strerror})") from error
     for name in (mark, *files):
         if name in modes and mark not in modes:
             raise InputError("out", str(directory), f"has a {name} but no {mark}; use another directory")
-        if not stat.S_ISREG(modes.get(name, stat.S_IFREG)):
-            raise InputError("out", str(directory / name), "must be a regular file and no symbolic link")
+        _require_regular(directory / name, modes.get(name, stat.S_IFREG))
     if not stat.S_ISDIR(modes.get(FIGURES, stat.S_IFDIR)):
         raise InputError("out", str(directory / FIGURES), "must be a directory and no symbolic link")
+
+
+def _require_regular(path: Path, mode: int) -> None:
+    if not stat.S_ISREG(mode):
+        raise InputError("out", str(path), "must be a regular file and no symbolic link")
 
 
 def write_json(path: Path, content: object) -> None:

@@ -22,9 +22,6 @@ from tests.helpers.tiny_study import RUN, TINY, Fault, read_sessions, read_table
 
 pytestmark = pytest.mark.usefixtures("tiny_file")
 
-NO_PROCESS = 99_999_999
-"""A process id that no process has."""
-
 
 def finished_runs() -> set[str]:
     return set(pq.read_table("results/runs.parquet")["run"].to_pylist())
@@ -132,7 +129,7 @@ def test_tables_that_cannot_be_written_stay_unchanged(
 
 
 @pytest.mark.parametrize(
-    "name", ["runs.parquet", "manifest.json", f".unfinished-{NO_PROCESS}-manifest.json", "lock"]
+    "name", ["runs.parquet", "manifest.json", ".unfinished-0123456789abcdef.json", "lock"]
 )
 def test_truncated_files_are_replaced(name: str) -> None:
     whole = uninterrupted_tables()

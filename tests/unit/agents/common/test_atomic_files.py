@@ -18,6 +18,8 @@ from kswarms.agents.common.atomic_files import (
 )
 from kswarms.agents.common.errors import InputError
 
+LINK = ".unfinished-0123456789abcdef"
+
 
 def test_a_file_is_replaced_on_success(tmp_path: Path) -> None:
     path = tmp_path / "film.gif"
@@ -85,7 +87,8 @@ def test_a_long_suffix_is_no_obstacle(tmp_path: Path) -> None:
 def test_only_temporary_files_of_killed_processes_are_removed(tmp_path: Path) -> None:
     (tmp_path / "precious").write_text("mine")
     (tmp_path / ".unfinished-tables-1").mkdir()
-    (tmp_path / ".unfinished-link").symlink_to("precious")
+    (tmp_path / ".unfinished-novel.tex").touch()
+    (tmp_path / LINK).symlink_to("precious")
     (tmp_path / "1-film.gif").touch()
     child = os.fork()
     if child == 0:
@@ -99,8 +102,8 @@ def test_only_temporary_files_of_killed_processes_are_removed(tmp_path: Path) ->
         remove_temporary_files(tmp_path)
         assert not left_over.exists()
         assert file.read_text() == "in use"
-    names = {path.name for path in tmp_path.iterdir()}
-    assert names == {"precious", ".unfinished-tables-1", ".unfinished-link", "1-film.gif", "other.gif"}
+    kept = {"precious", ".unfinished-tables-1", ".unfinished-novel.tex", LINK, "1-film.gif", "other.gif"}
+    assert {path.name for path in tmp_path.iterdir()} == kept
     assert (tmp_path / "precious").read_text() == "mine"
 
 

@@ -152,6 +152,19 @@ def test_a_process_that_is_killed_at_the_start_leaves_a_directory_of_kswarms(
         pass
 
 
+@pytest.mark.parametrize("make", [lambda path: path.symlink_to("../../key"), os.mkfifo, os.mkdir])
+def test_figures_are_regular_files(make: Callable[[Path], None], key: Path) -> None:
+    out = key.parent / "out"
+    with Study(out):
+        (out / "figures").mkdir()
+    make(out / "figures" / "fig-6.1c.png")
+    for enter in (enter_study, prepare_table):
+        with pytest.raises(
+            InputError, match=r"^out='.*/figures/fig-6\.1c\.png': must be a regular file and no"
+        ):
+            enter(out)
+
+
 def test_figures_must_be_writable_before_the_games(key: Path) -> None:
     out = key.parent / "out"
     with Study(out):
