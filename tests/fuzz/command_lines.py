@@ -94,6 +94,8 @@ def _run_of(directory: Path) -> str:
 def command_line(rng: Random, directory: Path) -> Input:
     """Return a command with words replaced, removed, repeated and added."""
     base = rng.choice(COMMANDS)
+    if base[0] in _SLOW and rng.random() < 0.8:
+        base = rng.choice(COMMANDS)
     words = [_run_of(directory) if word == "RUN" else word for word in base]
     for _ in range(rng.choice((1, 1, 2, 3))):
         place = rng.randrange(1, len(words) + 1)

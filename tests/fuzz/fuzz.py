@@ -43,7 +43,9 @@ def name_of(seed: int, k: int) -> str:
 
 def fuzz(names: list[str], study: Path) -> Iterator[Failure]:
     """Give the inputs of these names; yield failures."""
-    for name in names:
+    for k, name in enumerate(names):
+        if k % 200 == 199:
+            print(f"{k + 1} inputs", file=sys.stderr, flush=True)  # noqa: T201
         failure = try_input(name, GENERATORS[name.split("/")[0]], study)
         if failure is not None:
             yield failure

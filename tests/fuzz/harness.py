@@ -165,4 +165,6 @@ def _content(path: Path) -> bytes:
 def _is_foreign(path: str) -> bool:
     """Return whether a new path is outside the working directory, or a temporary file."""
     top, *rest = Path(path).parts
+    if rest[-1:] == [".kswarms-report"]:  # marks a folder of `report --files`
+        return False
     return top != "work" or any(part.startswith(".") or ".tmp" in part for part in rest)

@@ -151,4 +151,5 @@ def test_any_title_is_drawn_and_reported(title: str, capsys: pytest.CaptureFixtu
 def test_a_film_is_named_by_its_condition_and_stays_in_the_directory() -> None:
     Path("mine.toml").write_text(SCENARIO.replace("TITLE", "../../a/b"))
     assert invoke(["film", "mine.toml", "--sheet", "1", "--to", "1"]) == 0
-    assert {path.name for path in Path.cwd().iterdir()} == {"mine.toml", "mine-..-..-a-b-n6-seed0.png"}
+    names = {path.name for path in Path.cwd().iterdir()}
+    assert names == {"mine.toml", "mine-..-..-a-b-n6-seed0-840e9fee.png"}
