@@ -42,6 +42,7 @@ class ForagingModel(GameModel):
 
     def __init__(
         self,
+        /,  # so that a field named self is reported as unknown
         n: int = 20,
         policies: str | Sequence[PolicyLike] = "avoid,attack",
         shares: str = "",

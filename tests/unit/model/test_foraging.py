@@ -99,6 +99,7 @@ def test_numpy_numbers_are_accepted() -> None:
         ({"policies": b"avoid"}, "policy=97: "),
         ({"swarms": []}, "swarms=[]: unknown field; use n, policies, shares and drives"),
         ({"duration": "long"}, "duration='long': must be a number"),
+        ({"self": 3}, "self=3: unknown field; "),
         ({"robots": 3}, "robots=3: unknown field; allowed: layout, stations, "),
     ],
 )
