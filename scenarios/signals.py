@@ -28,10 +28,15 @@ def signals_as_interrupts(arrived: list[signal.Signals]) -> Iterator[None]:
 
 
 @contextmanager
-def deferred_signals() -> Iterator[None]:
-    """Defer signals to the end of the context, so that none of them interrupts it."""
+def deferred_signals(notify: Callable[[], None] = lambda: None) -> Iterator[None]:
+    """Defer signals to the end of the context, so that none of them interrupts it; call `notify` at once."""
     arrived: list[int] = []
-    with _handle(lambda number, _: arrived.append(number)):
+
+    def note(number: int, _frame: FrameType | None) -> None:
+        arrived.append(number)
+        notify()
+
+    with _handle(note):
         yield
     if arrived:
         signal.raise_signal(arrived[0])

@@ -19,6 +19,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.explore import page
 from kswarms.scenarios.explore.guard import Application, Guard
 from kswarms.scenarios.explore.session import Session
+from kswarms.scenarios.signals import deferred_signals
 
 HOST: Final = "127.0.0.1"
 """Host of the page. ``localhost`` may mean the IPv6 address too, where another user may listen."""
@@ -53,8 +54,12 @@ def serve(
             if open_browser:
                 webbrowser.open(_write_link(Path(directory), address))
 
+        def stop() -> None:
+            server.should_exit = True
+
         threading.Thread(target=announce, daemon=True).start()
-        server.run(sockets=[listener])
+        with deferred_signals(stop):  # uvicorn handles SIGINT and SIGTERM in the same way, but not SIGHUP
+            server.run(sockets=[listener])
 
 
 def _write_link(directory: Path, address: str) -> str:

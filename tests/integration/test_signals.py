@@ -4,6 +4,7 @@ import os
 import pty
 import re
 import signal
+import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -156,3 +157,17 @@ def test_a_closed_terminal_loses_no_results(style: str) -> None:
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 129
     assert read_sessions()[0]["status"] == "stopped: SIGHUP"
     assert len(read_tables("results")) == 3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_signals_end_the_page(number: signal.Signals) -> None:
+    pytest.importorskip("solara")
+    command = [sys.executable, "-m", "kswarms.scenarios.cli", "explore", "--no-browser", "--port", "0"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline().startswith("page: ")
+        process.send_signal(number)
+        err = process.communicate(timeout=60)[1]
+    assert process.returncode == STATUS[number]
+    assert err == f"kswarms: interrupted by {number.name}\n"
