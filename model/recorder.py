@@ -112,7 +112,6 @@ class Recorder:
             ]
             self._trajectory.append(rows)
         _make_room(collector, step)
-        self._read_names.update(self._row)
         collector.collect(state)
 
     def flush_conflicts(self) -> None:

@@ -230,3 +230,10 @@ def test_a_user_may_collect_at_any_time() -> None:
         model.step()
         assert model.datacollector.model_vars["time"] == model.sample_times
     assert model.pucks[0] > 0
+
+
+def test_rows_collected_at_one_instant_have_the_state_of_their_collection() -> None:
+    model = ForagingModel(n=6, seed=1)
+    model.running = False
+    model.datacollector.collect(model)
+    assert model.datacollector.model_vars["ended"] == ["running", "stopped"]
