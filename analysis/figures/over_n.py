@@ -156,6 +156,8 @@ def figure_of(runs: pd.DataFrame, scenario: str, title: str = "", detail: bool =
     Parameters and errors are those of `pucks_over_n`.
     """
     require_type("scenario", scenario, str, "must be the id of a scenario")
+    if not scenario.isprintable():
+        raise InputError("scenario", scenario, "must be the id of a scenario")
     require_type("title", title, str, "must be a text")
     draw = {("sud",): sud_over_n, TIME_SHARES: time_shares}.get(shown_quantities(scenario), pucks_over_n)
     return draw(runs, scenario, title, detail)

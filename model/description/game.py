@@ -122,9 +122,11 @@ class Game(GameFields):
 
     def _check_room(self) -> None:
         radius = self.body.radius
-        room = max(0.0, self.side - 2 * self.parameters.wall_clearance) ** 2
-        if self.size * math.pi * (radius + self.parameters.clearance / 2) ** 2 > 0.7 * room:
-            # Randomly placed discs jam when they cover about 80 % of the area.
+        reach = radius + self.parameters.clearance / 2
+        room = max(0.0, self.side - 2 * self.parameters.wall_clearance - reach / 2) ** 2
+        if self.size * math.pi * reach**2 > 0.7 * room:
+            # Randomly placed discs jam when they cover about 80 % of the area. Packings in a square lose
+            # a margin at the walls, which is much if there are few discs.
             rule = f"robots of radius {radius} m do not fit in a square of {self.side} m"
             raise InputError("n", self.size, rule)
         self.arena(0)

@@ -206,7 +206,7 @@ class Ledger:
     def run(self, run_digest: str) -> Run:
         """Return a run; raise an `InputError` if it is missing, or if its version or files have changed."""
         query = "SELECT version, description, seed FROM games JOIN runs ON game = id WHERE run = ?"
-        row = next(self._query(query, run_digest), None)
+        row = next(self._query(query, run_digest), None) if run_digest.isascii() else None
         if row is None:
             rule = f"must be a run of {self.path.parent}: see the column run of its tables"
             raise InputError("run", run_digest, rule)

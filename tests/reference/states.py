@@ -102,11 +102,11 @@ def scenes(draw: st.DrawFn, largest: int = 60) -> Scene:
 def crowded_games(draw: st.DrawFn) -> Game:
     """Draw a game whose robots cover 62 to 70 % of the arena, drive fast and shove.
 
-    70 % is the largest cover that a game allows.
+    The walls take a margin of half a radius; 70 % of the rest is the largest cover that a game allows.
     """
     body = BODIES[draw(st.sampled_from(("krembot", "krembot-sim")))]
     n, cover = draw(st.integers(20, 150)), draw(st.floats(0.62, 0.699))
-    side = math.sqrt(n * math.pi * body.radius**2 / cover)
+    side = math.sqrt(n * math.pi * body.radius**2 / cover) + body.radius / 2
     period = draw(st.sampled_from((0.05, 0.1)))
     fastest = min(1.0, LONGEST_STEP * body.radius / (period * body.top_speed))
     drive = fastest * draw(st.sampled_from((1.0, 0.7)))

@@ -158,6 +158,10 @@ def test_presets_and_limits_have_short_forms() -> None:
         ({"bases": [(0.5, 0.0), (0.6, 0.0)]}, "base 2=[0.6, 0.0]: with radius 0.17 m must not overlap base"),
         ({"actions": (RAM, RAM)}, "actions=['ram', 'ram']: must have different names"),
         ({"parameters": {"base_radius": 0.21}}, "base 1="),
+        (
+            {**swarm(size=12), "body": "krembot", "side": 0.2401, "parameters": "fitted, clearance=0"},
+            "n=12: robots of radius 0.0325 m do not fit",
+        ),
         (swarm(size=200), "n=200: robots of radius 0.085 m do not fit"),
         ({"side": 0.8, "parameters": "fitted, station_radius=0.05, base_radius=0.05"}, "n=20: robots of ra"),
         ({"parameters": {"wall_clearance": 1}}, "n=20: robots of radius 0.085 m do not fit in"),
