@@ -44,20 +44,22 @@ def dask_executor(address: str) -> Iterator[Executor]:
         reason = " ".join(str(error).split()) or type(error).__name__
         rule = f"must be the address of a Dask scheduler ({reason})"
         raise InputError("scheduler", address, rule) from error
-    with _without_logs("distributed.client"), client:
+    with _without_logs("distributed.client", "tornado.application"), client:
         yield _ClusterExecutor(client)
 
 
 @contextmanager
-def _without_logs(name: str) -> Iterator[None]:
-    """Silence a logger. Dask logs a traceback if the scheduler exits; `sweep` reports this in one line."""
-    logger = logging.getLogger(name)
-    level = logger.level
-    logger.setLevel(logging.CRITICAL)
+def _without_logs(*names: str) -> Iterator[None]:
+    """Silence loggers. Dask logs tracebacks if the scheduler exits or if a result arrives at the end."""
+    loggers = [logging.getLogger(name) for name in names]
+    levels = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
     try:
         yield
     finally:
-        logger.setLevel(level)
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.setLevel(level)
 
 
 def _require_scheduler(address: str) -> "Security":
