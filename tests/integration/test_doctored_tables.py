@@ -117,7 +117,7 @@ def test_functions_without_a_full_schema_need_their_columns() -> None:
 NO_GAMES = [None, 42, [1, 2], {"a": 1}, [], pd.DataFrame(), [{"pucks_1": 1}], object()]
 
 
-@pytest.mark.parametrize("source", NO_GAMES, ids=repr)
+@pytest.mark.parametrize("source", NO_GAMES, ids=lambda source: type(source).__name__)
 def test_sources_that_are_no_games_are_refused(source: Any) -> None:
     with pytest.raises(InputError, match="source="):
         read_results(source)
