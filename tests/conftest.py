@@ -1,6 +1,7 @@
 """Shared by all tests: a hypothesis profile, games with given poses."""
 
 import math
+import signal
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -14,6 +15,10 @@ from kswarms.model.game_model import GameModel
 # The first example of a test may compile the kernel, which takes longer than any useful deadline.
 settings.register_profile("kswarms", deadline=None)
 settings.load_profile("kswarms")
+
+# Tests send these signals. A background job of a shell and `nohup` ignore them, and so do their children.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 # Assertions in helper modules show their values, as in tests.
 pytest.register_assert_rewrite("tests.helpers", "tests.reference", "tests.baseline")

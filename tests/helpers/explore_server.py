@@ -8,8 +8,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from tests.helpers.interrupts import accept_interrupts
-
 PATIENCE = 40.0
 """Timeout of every wait (s), generous for a busy machine."""
 
@@ -24,7 +22,6 @@ def serve(*arguments: str) -> Iterator[str]:
         stderr=subprocess.PIPE,
         text=True,
         env=environment,
-        preexec_fn=accept_interrupts,
     )
     assert server.stdout is not None
     assert server.stderr is not None

@@ -1,17 +1,8 @@
-"""Signals for processes that a test starts, and their end."""
+"""End of processes that a test starts."""
 
-import signal
 import time
 from contextlib import suppress
 from pathlib import Path
-
-
-def accept_interrupts() -> None:
-    """Restore the default handling of Ctrl-C, which background jobs of a shell and their children ignore.
-
-    Use it as the argument ``preexec_fn`` of `subprocess.Popen`.
-    """
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def wait_for_end_of_group(group: int) -> None:

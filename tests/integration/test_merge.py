@@ -116,7 +116,7 @@ REFUSED = {
     "UPDATE runs SET swarms = 'nonsense'": "is damaged",
     "UPDATE records SET rows = x'00' WHERE rowid = 3": "is damaged",
     "UPDATE points SET run = 'none'": "is damaged (points",
-    "DROP TABLE games": "is damaged (runs",
+    "DROP TABLE games": "the table games is missing",
     "PRAGMA application_id = 5": "of another program",
 }
 

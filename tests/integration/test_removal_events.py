@@ -28,12 +28,12 @@ class Remover:
     def __init__(self, setting: Setting) -> None:
         self._fight = next(action for action in setting.actions if action.name == "fight")
         self.place = setting.place
-        self.model: GameModel
+        self.model: GameModel | None = None  # the trial has none
         self.calls = {"choose": 0, "learn": 0}
 
     def _count(self, name: str) -> None:
         self.calls[name] += 1
-        if self.calls[name] == 10 and name == self.during:
+        if self.model is not None and self.calls[name] == 10 and name == self.during:
             (robot,) = [robot for robot in self.model.robots if robot.policy is self]
             Remover.act(self.model, robot)
 

@@ -17,7 +17,7 @@ from kswarms.model.game_model import GameModel
 from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.study import Study
-from tests.helpers.interrupts import accept_interrupts, wait_for_end_of_group
+from tests.helpers.interrupts import wait_for_end_of_group
 from tests.helpers.tiny_study import RUN, TINY, Fault, read_sessions, read_tables, uninterrupted_tables
 
 pytestmark = pytest.mark.usefixtures("tiny_file")
@@ -62,7 +62,6 @@ def test_signals_stop_worker_processes_and_keep_finished_runs(number: signal.Sig
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
-        preexec_fn=accept_interrupts,
     ) as process:
         assert process.stderr is not None
         line = json.loads(process.stderr.readline())

@@ -147,7 +147,7 @@ def test_a_table_keeps_the_rows_of_other_games(tmp_path: Path) -> None:
 
 
 def test_temporary_files_of_killed_processes_are_removed(tmp_path: Path) -> None:
-    (tmp_path / f".unfinished-99999999-{FILE}").write_text("half a table")  # not the id of a process
+    (tmp_path / ".unfinished-0123456789abcdef.parquet").write_text("half a table")  # not locked
     prepare_table(tmp_path)
     assert not list(tmp_path.iterdir())
 
