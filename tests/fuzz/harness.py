@@ -72,6 +72,7 @@ def _place(root: Path) -> Iterator[Path]:
     here, environment = Path.cwd(), dict(os.environ)
     for name in ("work", "home", "tmp"):
         (root / name).mkdir()
+    (root / "home" / "letter.txt").write_text("mine")  # a home is not an empty directory
     os.environ |= {"HOME": str(root / "home"), "TMPDIR": str(root / "tmp"), "NO_COLOR": "1"}
     tempfile.tempdir = None
     os.chdir(root / "work")
