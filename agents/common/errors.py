@@ -4,6 +4,7 @@ import re
 import reprlib
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Final, Self
 
 from pydantic import ValidationError
@@ -27,6 +28,10 @@ class _Shortener(reprlib.Repr):
         """Python refuses to print very large integers."""
         bits = value.bit_length()
         return super().repr_int(value, level) if bits <= 2000 else f"<integer of {bits} bits>"
+
+    def repr_PosixPath(self, value: Path, level: int) -> str:  # noqa: N802  # the name that reprlib requires
+        """Show a path as the text that the user gave."""
+        return self.repr_str(str(value), level)
 
 
 _SHORTENER: Final = _Shortener()

@@ -54,11 +54,12 @@ def read_input_file(field: str, path: Path, limit: int) -> bytes:
 def require_regular_file(field: str, path: Path) -> None:
     """Raise an `InputError` unless a path leads to a regular file."""
     try:
-        _require_regular(field, path, path.stat())
+        found = path.stat()
     except OSError as error:
         raise _unreadable(field, path, error.strerror) from error
     except ValueError as error:  # a NUL character in the name
         raise _unreadable(field, path, error) from error
+    _require_regular(field, path, found)
 
 
 def _require_regular(field: str, path: Path, found: os.stat_result) -> None:

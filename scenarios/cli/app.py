@@ -15,7 +15,7 @@ import typer
 from typer.core import TyperGroup
 
 from kswarms import __version__
-from kswarms.agents.common.errors import InputError, printable
+from kswarms.agents.common.errors import InputError, printable, shorten
 from kswarms.scenarios.cli.parser_errors import to_input_error
 from kswarms.scenarios.cli.printing import print_lines
 from kswarms.scenarios.cli.terminal import flush_output, prepare_streams
@@ -111,7 +111,10 @@ def _run_command(words: Sequence[str]) -> int:
     except BrokenPipeError as error:  # no message if the reader of the output ended, such as `head`
         return 1 if flush_output() else _print_error(str(error), 1)
     except OSError as error:
-        return _print_error(str(error), 1)
+        message = str(error)
+        for name in (error.filename, error.filename2):
+            message = message.replace(repr(name), shorten(name))
+        return _print_error(message, 1)
     except RunError as error:
         print_lines(error.trace, err=True)
         return _print_error(str(error), 1)

@@ -31,6 +31,12 @@ _STYLE: Final = """
 .kswarms-page { margin: 0; }
 .kswarms-heading { font-weight: 600; display: block; margin-top: 10px; }
 .kswarms-swarm { padding: 4px 0 4px 10px; margin: 4px 0; }
+.kswarms-message { position: sticky; top: 0; z-index: 3; background: #fff; border-radius: 4px; }
+.v-navigation-drawer .kswarms-message { display: none; }
+@media (max-width: 959px) {
+  .v-navigation-drawer { min-width: min(400px, 100vw) !important; }
+  .v-navigation-drawer .kswarms-message { display: block; }
+}
 """
 
 new_session: Callable[[], Session] = partial(Session, DEFAULT_SCENARIO)
@@ -81,6 +87,7 @@ def Page() -> None:
     solara.Title("kswarms explore")
     solara.Style(_STYLE)
     with solara.Sidebar():
+        _Message(session, signals.controls)  # in a narrow window, where the controls cover the other one
         Controls(session, signals.controls, act)
     with solara.v.Row(class_="kswarms-page"):
         with solara.v.Col(cols=12, md=7):
@@ -156,7 +163,8 @@ def _ArenaView(session: Session, signals: Signals, act: Act) -> None:
 def _Message(session: Session, signal: solara.Reactive[int]) -> None:
     signal.get()
     if session.error:
-        solara.Error(session.error, icon=False, dense=True)
+        with solara.v.Html(tag="div", class_="kswarms-message"):
+            solara.Error(session.error, icon=False, dense=True)
 
 
 @solara.component

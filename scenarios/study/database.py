@@ -23,6 +23,7 @@ _READABLE: Final = {1: "CREATE TEMP VIEW runs AS SELECT *, NULL AS environment F
 _APPLICATION: Final = 0x6B73776D  # "kswm" identifies ledgers among SQLite files
 _HEADER_SIZE: Final = 100  # bytes at the start of a file of SQLite, with its change counter and size
 _LONGEST_CPU_TIME: Final = 1e12  # s
+_LONGEST_NAME: Final = 300  # characters of a version, a digest of code, an environment
 _DAMAGE: Final = (
     ArithmeticError,
     AttributeError,
@@ -217,7 +218,7 @@ def _check_types(db: sqlite3.Connection) -> None:
             raise sqlite3.DatabaseError(f"the table {table} is missing")
         condition = " AND ".join(test for column, test in tests.items() if column in present)
         if db.execute(f"SELECT 1 FROM main.{table} WHERE NOT ({condition})").fetchone():
-            raise sqlite3.DatabaseError(f"a value of the table {table} has a wrong type")
+            raise sqlite3.DatabaseError(f"a value of the table {table} has a wrong type or length")
 
 
 @cache
@@ -233,6 +234,8 @@ def _type_tests() -> dict[str, dict[str, str]]:
             test = f"typeof({column}) = '{kind.lower()}'"
             if kind == "REAL":
                 test += f" AND abs({column}) < {_LONGEST_CPU_TIME}"
+            if column in ("version", "code", "environment"):
+                test += f" AND length({column}) <= {_LONGEST_NAME}"
             if not (required or key):
                 test = f"({column} IS NULL OR {test})"
             tests.setdefault(table, {})[column] = test

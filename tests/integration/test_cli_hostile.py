@@ -153,3 +153,19 @@ def test_a_film_is_named_by_its_condition_and_stays_in_the_directory() -> None:
     assert invoke(["film", "mine.toml", "--sheet", "1", "--to", "1"]) == 0
     names = {path.name for path in Path.cwd().iterdir()}
     assert names == {"mine.toml", "mine-..-..-a-b-n6-seed0-840e9fee.png"}
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        *("status LONG", "export LONG", "replay LONG RUN", "replay . LONG", "merge x LONG"),
+        *("run LONG.toml", "run fig-6.1a --out LONG", "report LONG", "film LONG", "film --out LONG.gif"),
+        *("conflicts LONG --run RUN", "contribution LONG", "calibrate --out LONG", "show LONG/LONG"),
+    ],
+)
+def test_a_long_name_is_one_short_line(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(command.replace("LONG", "n" * 5000).split()) in (1, 2)
+    (line,) = capsys.readouterr().err.splitlines()
+    assert len(line) < 400
+    assert "Path(" not in line
+    assert list(Path().iterdir()) == []

@@ -43,6 +43,8 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
         ("UPDATE runs SET seed = ?", "x", "status replay conflicts run"),
         ("UPDATE runs SET seconds = ?", float("inf"), "status replay conflicts run"),
         ("UPDATE runs SET code = ?", b"\xff\x00", "status replay conflicts run"),
+        ("UPDATE runs SET code = ?", "a" * 1000, "status replay conflicts run"),
+        ("UPDATE runs SET environment = ?", "Python 3.12, " * 1000, "status replay conflicts run"),
         ("UPDATE runs SET error = ?", "\x1b[2J\nred", ""),
         ("UPDATE points SET scenario = ?", b"\xff", "status replay conflicts run"),
         ("DELETE FROM points WHERE run != ?", "", "replay conflicts"),

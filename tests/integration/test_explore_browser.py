@@ -66,6 +66,15 @@ class Browser:
         )
         return bool(self.script(code, element))
 
+    def in_view(self, element: Any) -> bool:
+        """Return whether the middle of an element is visible."""
+        code = (
+            "const box = arguments[0].getBoundingClientRect();"
+            "const top = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);"
+            "return arguments[0].contains(top)"
+        )
+        return bool(self.script(code, element))
+
     def frames(self) -> int:
         return int(self.script("return window.kswarmsFrames"))
 
@@ -180,7 +189,10 @@ def test_a_run_with_an_absent_robot_is_watched(browse: Callable[..., Browser], t
 
 
 def test_a_narrow_window_has_a_single_column(browse: Callable[..., Browser]) -> None:
-    browser = browse((420, 900))
+    browser = browse((500, 900))  # the smallest window of Chromium
+    phone = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": False}
+    browser.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", phone)
+    browser.wait(lambda: browser.all("canvas")[0].size["width"] < 390)
     width = browser.driver.execute_script("return document.documentElement.clientWidth")
     farthest = browser.driver.execute_script(
         "return Math.max(...[...document.querySelectorAll('.kswarms-page *')]"
@@ -193,3 +205,13 @@ def test_a_narrow_window_has_a_single_column(browse: Callable[..., Browser]) -> 
     browser.click("button[class*=nav-icon]", "")
     browser.wait(lambda: not browser.on_top(canvas))
     assert browser.all(".v-tab")[0].location["y"] > canvas.location["y"] + canvas.size["height"]
+
+    # The controls show the message, because they cover the page; none of them is cut off.
+    field = next(f for f in browser.all("input") if f.get_attribute("value") == "attack")
+    field.send_keys("x\n")
+    browser.wait(lambda: any(map(browser.in_view, browser.all(".v-alert", "policy='attackx'"))))
+    drawer = browser.all(".v-navigation-drawer")[0]
+    browser.wait(lambda: drawer.location["x"] == 0)
+    browser.script("document.querySelector('.v-navigation-drawer__content').scrollTop = 400")
+    assert any(map(browser.in_view, browser.all(".v-alert", "policy='attackx'")))
+    assert drawer.size["width"] <= width

@@ -1,5 +1,6 @@
 """The text of an `InputError`: one short line, whatever the value is."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -53,6 +54,7 @@ def test_short_values_are_shown_as_they_are(value: object) -> None:
 def test_a_long_value_is_shown_by_its_beginning_and_end() -> None:
     assert shorten("begin" + "-" * 5000 + "end").startswith("'begin---")
     assert shorten("begin" + "-" * 5000 + "end").endswith("---end'")
+    assert shorten(Path("a" * 5000)) == shorten("a" * 5000)
     assert shorten(10**9999) == "<integer of 33216 bits>"
 
 
