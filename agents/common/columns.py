@@ -23,7 +23,7 @@ condition       | text    |     |               | name of the curve; may be empt
 n               | integer | ≥ 1 |               | robots in all
 seed            | integer | ≥ 0 |               | seed of the game
 swarm           | integer | ≥ 1 |               | number of the swarm
-size            | integer | ≥ 0 |               | robots of the swarm in the measured game
+size            | integer | ≥ 0 |               | robots in the measured game, also if removed in it
 policy          | text    |     |               | policy, with its arguments
 pucks           | integer | ≥ 0 |               | pucks deposited
 sud             | integer |     | pucks         | Swarm Utility Difference: own pucks − all others (Eq. 3.7)
@@ -67,7 +67,7 @@ seen           | list of list of integer | ≥ 0            |   | detected robot
 reward         | real                    | or missing     | s | reward R, missing if nothing is learned
 q              | real                    | or missing     |   | Q of the action, missing if nothing is learned
 
-robots: one row for each robot at the end of its game
+robots: one row for each robot of the measured game, at its end or at its removal from the game
 key: run, robot
 run    | text        |     |   | digest of the game, its seed and the version
 robot  | integer     | ≥ 0 |   | number of the robot
