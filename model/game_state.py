@@ -10,7 +10,7 @@ import numpy as np
 import simpy
 from mesa.experimental.continuous_space import ContinuousSpace
 
-from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.errors import InputError, require_type
 from kswarms.agents.robot.conflict import Conflict
 from kswarms.agents.robot.krembot import Krembot
 from kswarms.model.description.game import Game
@@ -56,8 +56,7 @@ class GameState(MesaModel):
     """
 
     def __init__(self, game: Game, seed: float | str | None, rng: Rng | None, log_conflicts: bool) -> None:
-        if not isinstance(game, Game):
-            raise InputError("game", game, "must be a Game")
+        require_type("game", game, Game, "must be a Game")
         super().__init__(seed, rng)
         self.game = game
         self.env = simpy.Environment()

@@ -4,14 +4,14 @@ import itertools
 from collections.abc import Callable
 from functools import partial
 from os import PathLike
-from pathlib import Path
 from typing import Any, Final
 
 from mesa import DataCollector
 
 from kswarms.agents.actions import TOWARDS
 from kswarms.agents.common.columns import RECORDED_TABLES, column_names
-from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.errors import InputError, require_integer, require_type
+from kswarms.agents.common.input_files import to_path
 from kswarms.agents.policies.saved import best_actions, save_learned, snapshot_of
 from kswarms.agents.robot.krembot import Krembot
 from kswarms.agents.theory.swarms import swarm_utility_difference
@@ -44,8 +44,7 @@ def _report(value_of: Callable[[Krembot], Any], agent: Any) -> Any:
 
 def parse_record(text: str) -> frozenset[str]:
     """Parse a comma-separated list of `RECORDS`."""
-    if not isinstance(text, str):
-        raise InputError("record", text, "must be a text")
+    require_type("record", text, str, "must be a text")
     record = frozenset(name.strip() for name in text.split(",") if name.strip())
     for name in sorted(record):
         if name not in RECORDS:
@@ -236,13 +235,10 @@ def save_policies(state: GameState, swarm: int, path: str | PathLike[str]) -> No
     OSError
         If the file cannot be written; an existing file is unchanged.
     """
-    if not isinstance(state, GameState):
-        raise InputError("state", state, "must be a model")
-    if not isinstance(swarm, int) or isinstance(swarm, bool) or not 1 <= swarm <= len(state.members):
-        raise InputError("swarm", swarm, f"must be a whole number from 1 to {len(state.members)}")
-    if not isinstance(path, str | PathLike):
-        raise InputError("path", path, "must be the path of a file")
+    require_type("state", state, GameState, "must be a model")
+    require_integer("swarm", swarm, 1, len(state.members))
+    path = to_path("path", path)
     learned = [snapshot_of(robot.policy) for robot in state.players(swarm - 1)]
     if not learned or not all(learned):
         raise InputError("swarm", swarm, "must be a swarm of learners")
-    save_learned(Path(path), swarm, learned)
+    save_learned(path, swarm, learned)

@@ -48,16 +48,22 @@ def output_path(path: Path, field: str) -> Generator[Path, None, None]:
 
 def check_output(path: Path, field: str) -> None:
     """Raise an `InputError` about `field` unless a regular file can be written at `path`."""
-    regular = True
     try:
-        with suppress(FileNotFoundError):
-            regular = stat.S_ISREG(path.lstat().st_mode)
+        require_replaceable(path, field)
         with TemporaryFile(dir=path.parent):
             pass
+    except InputError:
+        raise
     except (OSError, ValueError) as error:
         raise _not_writable("file", path, field, error) from error
-    if not regular:
-        raise InputError(field, str(path), "must be a file, not a directory, symbolic link, device or pipe")
+
+
+def require_replaceable(path: Path, field: str) -> None:
+    """Raise an `InputError` about `field` unless a path is free or that of a regular file."""
+    with suppress(FileNotFoundError):
+        if not stat.S_ISREG(path.lstat().st_mode):
+            rule = "must be a file, not a directory, symbolic link, device or pipe"
+            raise InputError(field, str(path), rule)
 
 
 def check_directory(directory: Path, field: str, marks: Collection[str]) -> None:

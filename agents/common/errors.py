@@ -52,6 +52,12 @@ def require_type(field: str, value: object, kind: type, allowed: str) -> None:
         raise InputError(field, value, allowed)
 
 
+def require_integer(field: str, value: object, low: int, high: int) -> None:
+    """Raise an `InputError` unless a value is an integer in a range."""
+    if not isinstance(value, int) or isinstance(value, bool) or not low <= value <= high:
+        raise InputError(field, value, f"must be an integer from {low} to {high}")
+
+
 def printable(text: str) -> str:
     """Return a text as one line: line breaks become spaces, other control characters escape sequences."""
     return for_terminal(re.sub(r"\s*[\n\r]\s*", " ", text))

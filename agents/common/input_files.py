@@ -3,9 +3,14 @@
 import errno
 import os
 import stat
+import tomllib
 from pathlib import Path
+from typing import Any
+
+from pydantic_core import from_json
 
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.limits import MAX_JSON_FILE, MAX_TEXT_FILE
 
 
 def to_path(field: str, path: object) -> Path:
@@ -49,6 +54,24 @@ def read_input_file(field: str, path: Path, limit: int) -> bytes:
     if len(content) > limit:
         raise InputError(field, str(path), f"must be a file of at most {limit:,} bytes")
     return content
+
+
+def read_toml(field: str, path: Path) -> dict[str, Any]:
+    """Return the content of a TOML file, read as `read_input_file` does."""
+    source = read_input_file(field, path, MAX_TEXT_FILE)
+    try:
+        return tomllib.loads(source.decode("utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        raise InputError(field, str(path), f"must be a TOML file ({error})") from error
+
+
+def read_json(field: str, path: Path, kind: str = "a JSON file") -> Any:
+    """Return the content of a JSON file, read as `read_input_file` does; `kind` describes it in errors."""
+    source = read_input_file(field, path, MAX_JSON_FILE)
+    try:
+        return from_json(source)  # unlike `json`, it limits the depth of brackets to 200
+    except ValueError as error:
+        raise InputError(field, str(path), f"must be {kind} ({error})") from error
 
 
 def require_regular_file(field: str, path: Path) -> None:

@@ -26,7 +26,9 @@ from kswarms.agents.common.limits import ONE_LINE
 
 _KINDS: Final = {"text": pa.string(), "integer": pa.int64(), "real": pa.float64(), "boolean": pa.bool_()}
 _PLURALS: Final = {"text": "texts", "integer": "integers", "real": "numbers", "boolean": "truth values"}
-_ERRORS: Final = (OSError, ValueError, LookupError, TypeError, ArithmeticError, RuntimeError, MemoryError)
+_ERRORS: Final = (
+    pa.ArrowException, OSError, ValueError, LookupError, TypeError, ArithmeticError, RuntimeError, MemoryError
+)  # fmt: skip
 """Errors of Arrow for damaged files and values."""
 _BYTES_PER_VALUE: Final = 16
 """Estimated memory of a value that is read; files can be compressed ten thousandfold."""

@@ -2,7 +2,7 @@
 
 import math
 
-from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.errors import require_integer
 from kswarms.agents.common.limits import MAX_ACTIONS
 
 
@@ -29,8 +29,7 @@ class Bandit:
     __slots__ = ("choices", "count", "reward", "time")
 
     def __init__(self, arms: int) -> None:
-        if not isinstance(arms, int) or isinstance(arms, bool) or not 1 <= arms <= MAX_ACTIONS:
-            raise InputError("arms", arms, f"must be an integer from 1 to {MAX_ACTIONS}")
+        require_integer("arms", arms, 1, MAX_ACTIONS)
         self.reward = [0.0] * arms
         self.time = [0.0] * arms
         self.count = [0.0] * arms

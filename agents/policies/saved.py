@@ -7,14 +7,12 @@ from pathlib import Path
 from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
-from pydantic_core import from_json
 
 from kswarms.agents.actions import AWAY, Action
 from kswarms.agents.common.atomic_files import atomic_path
 from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.input_files import read_input_file, require_regular_file
-from kswarms.agents.common.limits import MAX_JSON_FILE
+from kswarms.agents.common.input_files import read_json, require_regular_file
 from kswarms.agents.policies.interface import Policy, Setting
 
 
@@ -127,8 +125,9 @@ def load_learned(path: Path) -> SavedPolicies:
 @lru_cache(maxsize=16)
 def _load(path: Path, _modified: int) -> SavedPolicies:
     # The cache is keyed by the modification time too, so that a changed file is read again.
-    content = read_input_file("file", path, MAX_JSON_FILE)
+    kind = "a file of learned policies"
+    content = read_json("file", path, kind)
     try:
-        return SavedPolicies(**from_json(content))  # unlike `json`, it limits the depth of brackets to 200
+        return SavedPolicies(**content)
     except (ValueError, TypeError) as error:
-        raise InputError("file", str(path), f"must be a file of learned policies ({error})") from None
+        raise InputError("file", str(path), f"must be {kind} ({error})") from None

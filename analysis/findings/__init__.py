@@ -1,11 +1,11 @@
 """Findings: statements about outcomes, and their verdicts by results (section 3.4 of the experiments)."""
 
 from collections.abc import Iterable
-from importlib.resources import files
+from pathlib import Path
 from typing import Final
 
 from kswarms.agents.common.errors import require_type
-from kswarms.analysis.findings.finding import Finding, parse_findings, read_findings
+from kswarms.analysis.findings.finding import Finding, read_findings
 from kswarms.analysis.findings.judging import judge
 from kswarms.analysis.findings.verdicts import FAILS, HOLDS, NO_DATA, UNDECIDED, Verdict
 from kswarms.analysis.results.runs import Results
@@ -23,8 +23,7 @@ __all__ = [
     "read_findings",
 ]
 
-_THESIS: Final = files(__name__).joinpath("thesis.toml")
-FINDINGS: Final = parse_findings(_THESIS.read_text(encoding="utf-8"), "thesis.toml")
+FINDINGS: Final = read_findings(Path(__file__).with_name("thesis.toml"))
 """Findings of the thesis."""
 
 

@@ -1,6 +1,5 @@
 """Findings as data, and reading findings from TOML."""
 
-import tomllib
 from pathlib import Path
 from typing import Annotated, Self
 
@@ -8,8 +7,7 @@ from pydantic import Field, model_validator
 
 from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.input_files import read_input_file, to_path
-from kswarms.agents.common.limits import MAX_TEXT_FILE
+from kswarms.agents.common.input_files import read_toml, to_path
 from kswarms.analysis.findings.claims import Claim
 from kswarms.analysis.statistics.intervals import CONFIDENCE
 
@@ -61,18 +59,4 @@ def read_findings(path: str | Path) -> tuple[Finding, ...]:
     InputError
         The file cannot be read, is not TOML, or has invalid or other content.
     """
-    content = read_input_file("findings", to_path("findings", path), MAX_TEXT_FILE)
-    try:
-        text = content.decode()
-    except UnicodeDecodeError as error:
-        raise InputError("findings", str(path), "must be a TOML file in UTF-8") from error
-    return parse_findings(text, str(path))
-
-
-def parse_findings(text: str, name: str) -> tuple[Finding, ...]:
-    """Read findings from TOML text; `name` identifies it in errors, which are those of `read_findings`."""
-    try:
-        content = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise InputError("findings", name, f"must be TOML: {error}") from error
-    return _FindingsFile(**content).findings
+    return _FindingsFile(**read_toml("findings", to_path("findings", path))).findings

@@ -10,8 +10,7 @@ from typing import Any, Final
 import pandas as pd
 
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.input_files import read_input_file
-from kswarms.agents.common.limits import MAX_JSON_FILE
+from kswarms.agents.common.input_files import read_json
 from kswarms.analysis.report.page import Part
 from kswarms.analysis.results.tables import count_rows
 from kswarms.analysis.text_tables import TextTable
@@ -54,12 +53,7 @@ def _describe(path: Path) -> dict[str, Any]:
 
 
 def _read_manifest(path: Path) -> dict[str, Any]:
-    try:
-        content = json.loads(read_input_file("results", path, MAX_JSON_FILE).decode())
-    except InputError:
-        raise
-    except (ValueError, RecursionError) as error:
-        raise InputError("results", str(path), "must be readable JSON") from error
+    content = read_json("results", path)
     if not isinstance(content, dict):
         raise InputError("results", str(path), "must be a JSON object")
     return content

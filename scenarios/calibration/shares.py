@@ -1,6 +1,5 @@
 """Shares of robots that learn to attack, measured by games and stored in a file."""
 
-import json
 import time
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
@@ -11,8 +10,7 @@ import numpy as np
 
 from kswarms.agents.common.arrays import Floats
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.input_files import read_input_file
-from kswarms.agents.common.limits import MAX_JSON_FILE
+from kswarms.agents.common.input_files import read_json
 from kswarms.scenarios.calibration.games import Candidate, Cell, learning_game
 from kswarms.scenarios.runs.run import Run, digest
 from kswarms.scenarios.study.directory import write_json
@@ -77,12 +75,11 @@ def _read(path: Path, setup: dict[str, Any]) -> dict[str, float]:
 
 def read_shares(path: Path) -> tuple[dict[str, Any], dict[str, float]]:
     """Return setup and shares of a file; `InputError` if it is no file of a fit."""
-    source = read_input_file("out", path, MAX_JSON_FILE)
     try:
-        content = json.loads(source)
+        content = read_json("out", path)
         setup, shares = dict(content["setup"]), dict(content["shares"])
         valid = all(0.0 <= share <= 1.0 for share in shares.values())
-    except (ValueError, TypeError, KeyError, RecursionError):
+    except (ValueError, TypeError, KeyError):
         valid = False
     if not valid:
         raise InputError("out", str(path.parent), f"has a {path.name} that is no file of a fit")

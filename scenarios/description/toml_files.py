@@ -1,11 +1,9 @@
 """Scenarios as TOML files."""
 
-import tomllib
 from pathlib import Path
 
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.input_files import read_input_file, to_path
-from kswarms.agents.common.limits import MAX_TEXT_FILE
+from kswarms.agents.common.input_files import read_toml, to_path
 from kswarms.scenarios.description.scenario import Scenario
 
 
@@ -18,11 +16,7 @@ def read_scenarios(path: Path) -> list[Scenario]:
         If the file cannot be read, or a scenario is invalid.
     """
     path = to_path("id", path)
-    source = read_input_file("id", path, MAX_TEXT_FILE)
-    try:
-        content = tomllib.loads(source.decode("utf-8-sig"))
-    except (ValueError, RecursionError) as error:
-        raise InputError("id", str(path), f"must be a TOML file ({error})") from error
+    content = read_toml("id", path)
     scenarios = content.get("scenarios", content)
     if not isinstance(scenarios, list):
         return [_make_scenario(path.name, content)]

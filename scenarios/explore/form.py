@@ -5,7 +5,7 @@ from typing import Any, Literal, NamedTuple, Self
 
 from kswarms.agents.body import BODIES
 from kswarms.agents.common.descriptions import FrozenModel
-from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.errors import InputError, require_integer
 from kswarms.agents.common.limits import MAX_SEED
 from kswarms.agents.learning.rewards import REWARDS
 from kswarms.agents.learning.selection_rules import RULES
@@ -54,8 +54,7 @@ class Form(NamedTuple):
 
     def game(self) -> Game:
         """Return the game; raise `InputError` if a value is invalid."""
-        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or not 0 <= self.seed <= MAX_SEED:
-            raise InputError("seed", self.seed, f"must be an integer from 0 to {MAX_SEED}")
+        require_integer("seed", self.seed, 0, MAX_SEED)
         rules = tuple(SwarmRule(**swarm) for swarm in self.swarms)
         game = Condition(swarms=rules, **self.fields).game(self.n)
         return game.replace(absent=self.absent, absent_from=self.absent_from) if self.absent else game

@@ -24,15 +24,10 @@ _APPLICATION: Final = 0x6B73776D  # "kswm" identifies ledgers among SQLite files
 _HEADER_SIZE: Final = 100  # bytes at the start of a file of SQLite, with its change counter and size
 _LONGEST_CPU_TIME: Final = 1e12  # s
 _LONGEST_NAME: Final = 300  # characters of a version, a digest of code, an environment
-_DAMAGE: Final = (
-    ArithmeticError,
-    AttributeError,
-    LookupError,
-    MemoryError,
-    RuntimeError,
-    TypeError,
-    ValueError,
-)  # includes UnicodeError and RecursionError
+_DAMAGE: Final[tuple[type[Exception], ...]] = (
+    ArithmeticError, AttributeError, LookupError, MemoryError, RuntimeError, TypeError, ValueError
+)  # fmt: skip
+"""Errors that unexpected content raises, such as `UnicodeError` and `RecursionError`."""
 _TABLES: Final = f"""
 PRAGMA application_id = {_APPLICATION};
 PRAGMA user_version = {_FORMAT};
@@ -243,14 +238,16 @@ def _type_tests() -> dict[str, dict[str, str]]:
 
 
 @contextmanager
-def damage_errors(path: Path) -> Generator[None, None, None]:
-    """Re-raise errors that unexpected content of a ledger causes as `OSError`."""
+def damage_errors(path: Path, *more: type[Exception]) -> Generator[None, None, None]:
+    """Re-raise errors that unexpected content of a ledger causes as `OSError`, and those of `more` kinds."""
     try:
         yield
-    except InputError:
-        raise
-    except _DAMAGE as error:
-        raise OSError(f"{path}: is damaged ({error!r:.200})") from error
+    except (*_DAMAGE, *more) as error:
+        is_input_error = isinstance(error, InputError)
+        if is_input_error and InputError not in more:
+            raise
+        reason = str(error) if is_input_error else repr(error)[:200]
+        raise OSError(f"{path}: is damaged ({reason})") from error
 
 
 @contextmanager

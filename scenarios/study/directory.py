@@ -1,13 +1,12 @@
 """Results directories and JSON files in them."""
 
 import json
-import stat
 from collections.abc import Collection
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Final
 
-from kswarms.agents.common.atomic_files import atomic_path, check_directory
+from kswarms.agents.common.atomic_files import atomic_path, check_directory, require_replaceable
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.study.database import LEDGER_FILE
 
@@ -40,25 +39,21 @@ def make_directory(directory: Path, mark: str, files: Collection[str] = ()) -> N
     check_directory(directory, "out", _MARKS)
     try:
         directory.mkdir(parents=True, exist_ok=True)
-        modes = {path.name: path.lstat().st_mode for path in directory.iterdir()}
-        if stat.S_ISDIR(modes.get(FIGURES, 0)):
-            with TemporaryFile(dir=directory / FIGURES):
+        present = {path.name for path in directory.iterdir()}
+        for name in (mark, *files):
+            if name in present and mark not in present:
+                raise InputError("out", str(directory), f"has a {name} but no {mark}; use another directory")
+            require_replaceable(directory / name, "out")
+        if FIGURES in present:
+            figures = directory / FIGURES
+            if figures.is_symlink() or not figures.is_dir():
+                raise InputError("out", str(figures), "must be a directory and no symbolic link")
+            with TemporaryFile(dir=figures):
                 pass
-            for path in (directory / FIGURES).glob("*.png"):
-                _require_regular(path, path.lstat().st_mode)
+            for path in figures.glob("*.png"):
+                require_replaceable(path, "out")
     except OSError as error:
         raise InputError("out", str(directory), f"must be a writable directory ({error.strerror})") from error
-    for name in (mark, *files):
-        if name in modes and mark not in modes:
-            raise InputError("out", str(directory), f"has a {name} but no {mark}; use another directory")
-        _require_regular(directory / name, modes.get(name, stat.S_IFREG))
-    if not stat.S_ISDIR(modes.get(FIGURES, stat.S_IFDIR)):
-        raise InputError("out", str(directory / FIGURES), "must be a directory and no symbolic link")
-
-
-def _require_regular(path: Path, mode: int) -> None:
-    if not stat.S_ISREG(mode):
-        raise InputError("out", str(path), "must be a regular file and no symbolic link")
 
 
 def write_json(path: Path, content: object) -> None:

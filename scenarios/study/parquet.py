@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
 from typing import Any, Final
@@ -15,6 +14,7 @@ from kswarms.agents.common.columns import RECORDED_TABLES, TABLES, Column, colum
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.tables import arrow_schema, check_table
 from kswarms.scenarios.description.scenario import ID_PATTERN
+from kswarms.scenarios.study.database import damage_errors
 from kswarms.scenarios.study.ledger import Ledger, Point
 from kswarms.scenarios.study.mixtures import Curve
 
@@ -24,10 +24,6 @@ _POINTS_PER_PART: Final = 1000
 _ROWS_PER_GROUP: Final = 100_000
 """Minimum number of rows of a row group, which limits the memory of an export."""
 
-_WRONG_CONTENT: Final = (
-    pa.ArrowException, AttributeError, LookupError, OverflowError, RecursionError, TypeError, ValueError
-)  # fmt: skip
-"""Errors that the content of a damaged ledger raises."""
 _PATTERNS: Final = {"run": "[0-9a-f]{16}", "scenario": ID_PATTERN}
 """Patterns of columns of text whose values may become names of files."""
 _TYPES: Final[dict[str, set[type]]] = {
@@ -55,7 +51,7 @@ def export(ledger: Ledger, directory: Path) -> list[Path]:
     The bytes do not depend on the order in which runs end. A damaged ledger raises an `OSError`.
     """
     paths = []
-    with _damage(ledger):
+    with damage_errors(ledger.path, pa.ArrowException, InputError):
         for name, schema, parts in _tables(ledger):
             path = directory / f"{name}.parquet"
             if _write(path, schema, parts):
@@ -65,20 +61,10 @@ def export(ledger: Ledger, directory: Path) -> list[Path]:
 
 def check_tables(ledger: Ledger) -> None:
     """Raise an `OSError` if `export` would report a damaged ledger; nothing is written."""
-    with _damage(ledger):
+    with damage_errors(ledger.path, pa.ArrowException, InputError):
         for _, _, parts in _tables(ledger):
             for _ in parts:
                 pass
-
-
-@contextmanager
-def _damage(ledger: Ledger) -> Iterator[None]:
-    """Re-raise errors of wrong content of a ledger as `OSError`."""
-    try:
-        yield
-    except _WRONG_CONTENT as error:
-        reason = str(error) if isinstance(error, InputError) else repr(error)
-        raise OSError(f"{ledger.path}: is damaged ({reason})") from error
 
 
 def _tables(ledger: Ledger) -> Iterator[tuple[str, pa.Schema, Iterator[pa.Table]]]:

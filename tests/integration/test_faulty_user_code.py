@@ -155,7 +155,7 @@ def test_a_step_reports_a_stopped_clock() -> None:
 @pytest.mark.parametrize("swarm", [0, 3, -1])
 def test_policies_are_saved_only_for_swarms_of_the_game(swarm: int) -> None:
     model: GameModel = ForagingModel(n=4, policies="learner,learner", learning=10, duration=10, seed=0)
-    with pytest.raises(InputError, match=f"swarm={swarm}: must be a whole number from 1 to 2"):
+    with pytest.raises(InputError, match=f"swarm={swarm}: must be an integer from 1 to 2"):
         save_policies(model, swarm, Path("learned.json"))
     assert not Path("learned.json").exists()
 

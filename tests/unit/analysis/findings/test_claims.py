@@ -64,9 +64,9 @@ def test_a_finding_can_be_changed() -> None:
     [
         ("findings = 3", r"findings=3: must be a valid tuple"),
         ("", r"findings=None: is required"),
-        (f"findings = {'[' * 3000}", "must be TOML: maximum recursion"),
+        (f"findings = {'[' * 3000}", r"must be a TOML file \(maximum recursion"),
         ("findings = []", r"findings=\[\]"),
-        ("not TOML", r"findings='.*mine\.toml': must be TOML: Expected '='"),
+        ("not TOML", r"findings='.*mine\.toml': must be a TOML file \(Expected '='"),
         (
             HEAD + COMPARE + "above = 3",
             r"claim\.compare\.above=3: unknown field; allowed: densities, kind, left",
