@@ -182,7 +182,7 @@ class Ledger:
         """Yield the finished points with rows ``swarms`` or ``policies``, ordered by curve, `n` and seed."""
         for *point, rows in self._query(
             f"SELECT run, scenario, condition, n, points.seed, {name} FROM points JOIN runs USING (run)"
-            f" WHERE status = 'done' AND {name} IS NOT '[]' ORDER BY scenario, condition, n, points.seed"
+            " WHERE status = 'done' ORDER BY scenario, condition, n, points.seed"
         ):
             yield Point(*point), self._parse_json(rows)
 

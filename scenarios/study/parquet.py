@@ -124,18 +124,28 @@ def _result_parts(
     ledger: Ledger, name: str, schema: pa.Schema, grid_points: Mapping[Curve, dict[str, Any]]
 ) -> Iterator[pa.Table]:
     no_grid: dict[str, Any] = dict.fromkeys(column for point in grid_points.values() for column in point)
-    points = ledger.results("swarms" if name == "runs" else name)
+    field = "swarms" if name == "runs" else name
+    points = (_point_rows(point, rows, field) for point, rows in ledger.results(field))
     while batch := list(islice(points, _POINTS_PER_PART)):
         rows = [
             no_grid | grid_points.get((point.scenario, point.condition), {}) | point._asdict() | row
             for point, rows in batch
             for row in rows
         ]
+        if not rows:
+            continue
         columns = {column: [row[column] for row in rows] for column in schema.names}
         for column in TABLES[name]:  # Arrow would convert some wrong types, such as 1.5 for an integer
             if not set(map(type, columns[column.name])) <= _TYPES[column.kind]:
                 raise TypeError(f"wrong type of {column.name} in {name}")
         yield pa.table(columns, schema=schema)
+
+
+def _point_rows(point: Point, rows: list[dict[str, Any]], field: str) -> tuple[Point, list[dict[str, Any]]]:
+    """Return a point with its rows; raise a `ValueError` unless a run has a row for each swarm."""
+    if field == "swarms" and (not rows or [row["swarm"] for row in rows] != list(range(1, len(rows) + 1))):
+        raise ValueError(f"wrong swarms of run {point.run}")
+    return point, rows
 
 
 def _write(path: Path, schema: pa.Schema, parts: Iterator[pa.Table]) -> bool:

@@ -38,6 +38,8 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
         ("UPDATE runs SET swarms = ?", "{" * 2000, "replay run"),
         ("UPDATE runs SET swarms = ?", '{"a":' * 2000, "replay run"),
         ("UPDATE runs SET swarms = ?", '[{"swarm": NaN}]', "replay run"),
+        ("UPDATE runs SET swarms = ?", "[]", "replay run"),
+        ("UPDATE runs SET swarms = replace(swarms, '\"swarm\": 2', '\"swarm\": ' || ?)", 99, "replay run"),
         ("UPDATE runs SET policies = ?", "3", "replay run"),
         ("UPDATE runs SET swarms = ?", None, "replay run"),
         ("UPDATE runs SET seed = ?", "x", "status replay conflicts run"),
