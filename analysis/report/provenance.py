@@ -10,7 +10,8 @@ from typing import Any, Final
 import pandas as pd
 
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.input_files import read_json
+from kswarms.agents.common.input_files import read_input_file
+from kswarms.agents.common.limits import MAX_JSON_FILE
 from kswarms.analysis.report.page import Part
 from kswarms.analysis.results.tables import count_rows
 from kswarms.analysis.text_tables import TextTable
@@ -53,7 +54,12 @@ def _describe(path: Path) -> dict[str, Any]:
 
 
 def _read_manifest(path: Path) -> dict[str, Any]:
-    content = read_json("results", path)
+    try:  # not `read_json`, which refuses the lone surrogates of a command line that is not UTF-8
+        content = json.loads(read_input_file("results", path, MAX_JSON_FILE).decode())
+    except RecursionError as error:
+        raise InputError("results", str(path), "must be a JSON file (too deep)") from error
+    except (json.JSONDecodeError, UnicodeDecodeError) as error:
+        raise InputError("results", str(path), f"must be a JSON file ({error})") from error
     if not isinstance(content, dict):
         raise InputError("results", str(path), "must be a JSON object")
     return content

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from kswarms.agents.common.columns import KEYS
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.input_files import to_path
 from kswarms.analysis.results.sweeps import Sweep, tables_of_sweep
@@ -65,7 +66,8 @@ def read_results(
         return Results(*tables_of_sweep(source, scenario, by))
     directory = to_path("results", source)
     learned = (directory / "policies.parquet").exists()
-    return Results(read_runs(directory), read_policies(directory) if learned else None)
+    runs = read_runs(directory)
+    return Results(runs, _require_rows_of(read_policies(directory), runs) if learned else None)
 
 
 def read_runs(directory: Path) -> pd.DataFrame:
@@ -87,3 +89,14 @@ def _read_outcomes(directory: Path, table: str) -> pd.DataFrame:
     if rows.empty:
         raise InputError("results", str(directory / f"{table}.parquet"), "must hold at least one run")
     return rows
+
+
+def _require_rows_of(policies: pd.DataFrame, runs: pd.DataFrame) -> pd.DataFrame:
+    """Return `policies` if each row belongs to a row of `runs`."""
+    labels = ["run", *KEYS["runs"]]
+    keys = set(runs[labels].itertuples(index=False, name=None))
+    for row in policies[labels].drop_duplicates().itertuples(index=False, name=None):
+        if row not in keys:
+            key = ", ".join(f"{label}={value}" for label, value in zip(labels, row, strict=True))
+            raise InputError("policies.parquet key", key, "must be in runs.parquet")
+    return policies

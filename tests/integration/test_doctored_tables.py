@@ -39,6 +39,9 @@ DOCTORED = {
     "conflicts t_a=-1.0: must be a finite number ≥ 0": MET.assign(run=RUN, t_a=-1.0),
     "conflicts phase='other': must be one of learning, game": MET.assign(run=RUN, phase="other"),
     "robots pucks=0.5: must be an integer ≥ 0": robots((RUN,)).assign(pucks=0.5),
+    "policies key='run=": RUNS.assign(
+        condition="other", opponent=1, action="flight", share=0.5, attack_share=0.0
+    ),
     "policies share=2.0: must be a finite number 0 to 1": RUNS.assign(
         opponent=1, action="flight", share=2.0, attack_share=0.0
     ),

@@ -200,7 +200,7 @@ def test_provenance_shows_the_manifest(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("text", "allowed"),
-    [("{", "readable JSON"), ("[" * 100_000, "readable JSON"), ("[1]", "a JSON object")],
+    [("{", "a JSON file"), ("[" * 100_000, "a JSON file"), ("[1]", "a JSON object")],
     ids=["truncated", "nested", "list"],
 )
 def test_an_invalid_manifest_is_an_error(tmp_path: Path, text: str, allowed: str) -> None:
