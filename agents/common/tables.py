@@ -229,7 +229,7 @@ def read_table(
     if absent:
         raise InputError(field, str(path), f"must have the missing columns {', '.join(absent)}")
     _check_size(metadata, ["run"] if runs is not None else columns, path, field)
-    filters = None if runs is None else [("run", "in", set(runs))]
+    filters = None if runs is None else [("run", "in", {_require_digest(run) for run in runs})]
     with _readable(path, field), path.open("rb") as file:
         found = pq.read_table(
             file,
@@ -238,6 +238,12 @@ def read_table(
             read_dictionary=list(column_names(table, "text")),
         )
     return check_table(found.replace_schema_metadata(None), table, path.name, required)
+
+
+def _require_digest(run: object) -> str:
+    if not isinstance(run, str):
+        raise InputError("runs", run, "must be the digest of a run")
+    return run
 
 
 def read_metadata(path: Path, field: str = "results") -> Any:

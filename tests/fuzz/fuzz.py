@@ -7,6 +7,7 @@ A refusal is one line and writes nothing; no temporary file is left. An input is
 import argparse
 import contextlib
 import io
+import resource
 import sys
 import tempfile
 import time
@@ -22,6 +23,8 @@ from tests.fuzz import command_lines, python_calls
 from tests.fuzz.harness import Failure, try_input
 
 GENERATORS: Final = command_lines.GENERATORS | python_calls.GENERATORS
+MAX_MEMORY: Final = 8 * 10**9
+"""Memory of the script (bytes)."""
 RECORD: Final = "robots,conflicts,trajectory"
 
 
@@ -62,6 +65,7 @@ def main() -> None:
     numbers = range(given.first, given.first + given.inputs)
     names = given.names or [name_of(given.seed, k) for k in numbers]
     names = [name for name in names if given.kind in (None, name.split("/")[0])]
+    resource.setrlimit(resource.RLIMIT_AS, (MAX_MEMORY, MAX_MEMORY))  # an input that needs more is a failure
     begin, failed = time.monotonic(), Counter[str]()
     with base_study() as study:
         for failure in fuzz(names, study):

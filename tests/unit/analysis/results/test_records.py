@@ -21,6 +21,12 @@ def test_records_of_selected_runs_are_read(tmp_path: Path) -> None:
     assert recorded_runs(tmp_path / "nowhere", "conflicts") == set()
 
 
+def test_runs_that_are_no_digests_are_refused_at_the_first(tmp_path: Path) -> None:
+    MET.assign(run="a").to_parquet(tmp_path / "conflicts.parquet")
+    with pytest.raises(InputError, match="runs=0: must be the digest of a run"):
+        read_conflicts(tmp_path, range(10**9))
+
+
 def test_damaged_and_incomplete_records_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "conflicts.parquet"
     path.write_bytes(b"PAR1 and no more")
