@@ -61,7 +61,7 @@ class Learner:
         otherwise: str = "",
     ) -> None:
         require_type("setting", setting, Setting, "must be a kswarms.Setting")
-        if about not in ("inter", "intra", "both"):
+        if not isinstance(about, str) or about not in ("inter", "intra", "both"):
             raise InputError("about", about, "must be inter, intra or both")
         self.swarm = setting.swarm
         self.actions = setting.actions

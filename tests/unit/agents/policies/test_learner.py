@@ -4,6 +4,7 @@ import math
 from collections import Counter
 from typing import Any
 
+import numpy as np
 import pytest
 from scipy.stats import chisquare
 
@@ -191,3 +192,8 @@ def test_an_inter_learner_needs_another_swarm() -> None:
     with pytest.raises(InputError, match=r"^policy.about='inter': needs another swarm"):
         make_policy("inter-learner", make_setting(swarm=0, swarms=1))
     assert set(learner(swarm=0, swarms=1).bandits) == {0}
+
+
+def test_an_array_is_no_choice_of_swarms() -> None:
+    with pytest.raises(InputError, match="^about=.*must be inter, intra or both"):
+        Learner(make_setting(swarm=0, swarms=2), about=cast(Any, np.array(["inter", "intra"])))
