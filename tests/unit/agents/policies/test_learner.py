@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -195,5 +195,5 @@ def test_an_inter_learner_needs_another_swarm() -> None:
 
 
 def test_an_array_is_no_choice_of_swarms() -> None:
-    with pytest.raises(InputError, match="^about=.*must be inter, intra or both"):
+    with pytest.raises(InputError, match=r"^about=.*must be inter, intra or both"):
         Learner(make_setting(swarm=0, swarms=2), about=cast(Any, np.array(["inter", "intra"])))
