@@ -31,7 +31,7 @@ def test_only_a_regular_file_of_limited_size_is_read(
     Path("linked").symlink_to("/dev/zero")
     with Path("large").open("wb") as file:
         file.truncate(MAX_JSON_FILE + 1)  # sparse: it takes no room on the disk
-    with pytest.raises(InputError, match=r"file='.*': must be a (regular|readable )?file"):
+    with pytest.raises(InputError, match=r"file='.*': must be a (regular |readable )?file"):
         Game(swarms=(Swarm(policy=f"learned(file={name!r})", size=2),))
 
 
