@@ -5,6 +5,7 @@ PYTHON ?= $(shell for python in python3.11 python3 python; do \
 VENV := .venv
 BIN := $(VENV)/bin
 RUN := $(VENV)/.installed
+EXPLORE := $(VENV)/.installed-explore
 TEST := $(VENV)/.installed-test
 DEMO := results/demo
 # Tests that play many games: measuring coverage would double their time.
@@ -19,9 +20,15 @@ help:  ## list the targets
 
 demo: $(RUN)  ## install, play three scenarios, draw their figures into results/demo/figures/
 	$(BIN)/kswarms run fig-6.1a fig-6.1b fig-6.1c --seeds 10 --out $(DEMO)
-	@echo "To use the command kswarms in this shell: source $(BIN)/activate"
+	@echo "Next, in this order:"
+	@printf '  %s. %-44s %s\n' \
+		1 'look at the figures in' '$(DEMO)/figures/' \
+		2 'make kswarms a command of this shell:' 'source $(BIN)/activate' \
+		3 'write all results into one HTML file:' 'kswarms report $(DEMO)' \
+		4 'film a game:' 'kswarms film fig-6.1c --n 50 --to 60 --out fight.gif' \
+		5 'install and open a page that shows games:' 'make explore'
 
-explore: $(TEST)  ## open a page to watch, change and inspect games
+explore: $(EXPLORE)  ## open a page to watch, change and inspect games
 	$(BIN)/kswarms explore
 
 test: lint types docs  ## run all checks: lint, types, documentation, tests with coverage
@@ -49,11 +56,12 @@ clean:  ## remove the environment and all caches; keep results/
 	rm -rf $(VENV) build dist site .pytest_cache .hypothesis .mypy_cache .ruff_cache .coverage .coverage.* htmlcov
 	find agents model scenarios analysis tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
 
-# One environment, two stamps: `demo` installs the libraries, `test` adds the tools. A change of a dependency or a
-# pin installs again. The installation is editable; pip is quiet but shows errors.
+# One environment, three stamps: `demo` installs the libraries, `explore` adds the page, `test` adds the tools. A
+# change of a dependency or a pin installs again. The installation is editable; pip is quiet but shows errors.
 $(RUN): EXTRA :=
+$(EXPLORE): EXTRA := [explore]
 $(TEST): EXTRA := [test]
-$(RUN) $(TEST): pyproject.toml constraints.txt
+$(RUN) $(EXPLORE) $(TEST): pyproject.toml constraints.txt
 	@test -n "$(PYTHON)" || { echo "kswarms needs Python 3.11 or later; set PYTHON=/path/to/python" >&2; exit 1; }
 	@$(BIN)/python -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV)
 	@echo "Installing kswarms$(EXTRA) and its libraries into $(VENV); the first time takes a minute or two."

@@ -55,12 +55,15 @@ class _Cache(FunctionCache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the machine code of a signature, or None."""
+        code = None
         try:
-            return super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
+            code = super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
         except Exception:  # noqa: BLE001  # a damaged file raises any error of pickle
             with contextlib.suppress(OSError):
                 self.flush()  # type: ignore[no-untyped-call]
-            return None
+        if code is None:
+            _announce_compilation()
+        return code
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Save machine code and delete the oldest files of the directory."""
@@ -87,6 +90,13 @@ def _digest() -> str:
         digest.update(f"{path.relative_to(_SOURCES)} {len(source)} ".encode())
         digest.update(source)
     return digest.hexdigest()[:16]
+
+
+@cache
+def _announce_compilation() -> None:
+    """Log one line on a terminal, in the main process only."""
+    if sys.stderr is not None and sys.stderr.isatty() and multiprocessing.parent_process() is None:
+        logging.getLogger(__name__).warning("kswarms: compiling once, for a few seconds")
 
 
 @cache

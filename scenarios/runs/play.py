@@ -5,6 +5,7 @@ import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from kswarms.model.description.game import Game, Swarm
 from kswarms.model.game_model import GameModel
 from kswarms.model.recorder import policy_rows
 from kswarms.scenarios.runs.errors import RunError
@@ -48,6 +49,11 @@ def run_errors(label: str) -> Iterator[None]:
     except (Exception, SystemExit) as error:
         failure = Failure.of(error)
         raise RunError(f"{label} failed: {failure.error}", failure.trace) from error
+
+
+def compile_kernel() -> None:
+    """Compile the kernel unless its machine code is cached, so that workers only load it."""
+    GameModel(Game(swarms=(Swarm(policy="avoid", size=1),)), seed=0)
 
 
 def attempt(run: Run, record: str, code: str) -> tuple[Outcome | Failure, float]:

@@ -9,7 +9,7 @@ from typing import Final
 
 from kswarms.scenarios.runs.executor import play_through
 from kswarms.scenarios.runs.outcome import Failure, Result
-from kswarms.scenarios.runs.play import attempt_in_worker
+from kswarms.scenarios.runs.play import attempt_in_worker, compile_kernel
 from kswarms.scenarios.runs.run import Run, code_version
 from kswarms.scenarios.runs.workers import BLOCKED_AFTER, EXIT_TIMEOUT, Workers, new_workers
 
@@ -31,6 +31,7 @@ def play_in_processes(
     If a worker dies, its executor breaks. Any submitted run may be the cause, by its use of memory for
     example. So all submitted runs are retried one at a time. A run fails after `run_limit` seconds.
     """
+    compile_kernel()
     task = partial(attempt_in_worker, record, code_version(), run_limit)
     watch = Watch(run_limit)
     suspects: deque[Run] = deque()  # submitted runs of broken executors

@@ -80,6 +80,16 @@ def test_code_is_that_of_the_present_sources_whatever_their_times(package: Packa
     assert package.files() == before
 
 
+@pytest.mark.slow
+def test_a_terminal_shows_one_line_while_code_is_compiled(package: Package) -> None:
+    code = f"import sys; sys.stderr.isatty = lambda: True; {CALL}"
+    worker = f"import multiprocessing as m; m.parent_process = lambda: 'main'; {code}"
+    assert package.run(worker) == ("4.0", "")
+    package.write(2.0)
+    assert package.run(code) == ("6.0", "kswarms: compiling once, for a few seconds\n")
+    assert package.run(code) == ("6.0", "")
+
+
 @pytest.mark.parametrize(
     ("place", "name", "value"),
     [
