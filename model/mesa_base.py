@@ -54,7 +54,7 @@ class RobotSpace(ContinuousSpace):
 
     def __init__(self, half: float, size: int, random: random.Random) -> None:
         super().__init__([[-half, half], [-half, half]], torus=False, random=random, n_agents=size)
-        self._share(self._agent_positions)
+        self._share(np.empty((2, size)).T)  # the kernel needs contiguous columns
 
     def _share(self, positions: Any) -> None:
         self.positions: Floats = positions

@@ -14,7 +14,7 @@ from scipy.spatial.distance import pdist
 from kswarms.agents.common.arrays import Floats
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.streams import Purpose, stream
-from kswarms.model.kernel.arrays import PAIR, WORK
+from kswarms.model.kernel.arrays import make_pairs, make_work
 from kswarms.model.kernel.relaxation import TOLERANCE, relax
 
 _FEW: Final = (8, 56)
@@ -77,7 +77,9 @@ def _draw_place(
 def _separate(positions: Floats, limit: float, reach: float) -> None:
     """Move places within ± `limit` until their distances are at least twice `reach` (m)."""
     n = len(positions)
-    pairs = np.zeros(n * (n - 1) // 2, dtype=PAIR)
-    pairs["first"], pairs["second"] = np.triu_indices(n, 1)
+    pairs = make_pairs(n * (n - 1) // 2)
+    pairs.first[:], pairs.second[:] = np.triu_indices(n, 1)
     reach += TOLERANCE
-    relax(positions, reach, limit + reach, np.zeros(n, dtype=WORK), pairs, len(pairs))
+    x, y = positions.T.copy()
+    relax(x, y, reach, limit + reach, make_work(n), pairs, len(pairs.first))
+    positions[:, 0], positions[:, 1] = x, y

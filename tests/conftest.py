@@ -57,8 +57,9 @@ def scene() -> Scene:
         model = GameModel(game, seed=seed, record=record)
         for robot, (x, y, heading) in zip(model.robots, [p for poses in swarms for p in poses], strict=True):
             model.states.positions[robot.index] = x, y
-            row = model.states.robots[robot.index : robot.index + 1]
-            row["heading"], row["forward_x"], row["forward_y"] = heading, math.cos(heading), math.sin(heading)
+            bodies = model.states.bodies
+            bodies.heading[robot.index] = heading
+            bodies.forward_x[robot.index], bodies.forward_y[robot.index] = math.cos(heading), math.sin(heading)
         return model
 
     return build

@@ -184,10 +184,11 @@ class Krembot(TimedAgent):
     def _sensed_robots(self, met: int) -> tuple[int, ...]:
         """Return the numbers of the robots that the sensors read at the start of a conflict."""
         states, controller = self._states, self._controller
-        forward = states.robots[self.index]["forward_x"], states.robots[self.index]["forward_y"]
+        bodies = states.bodies
+        forward = bodies.forward_x[self.index], bodies.forward_y[self.index]
         nearest, read = np.full(SENSORS, controller.active_range), np.full(SENSORS, -1)
         arena = controller.radius, controller.half
-        read_sensors(self.index, met, *forward, states.positions, *arena, nearest, read)
+        read_sensors(self.index, met, *forward, bodies.x, bodies.y, *arena, nearest, read)
         return tuple(states.numbers[row] for row in read.tolist() if row >= 0)
 
     def _vacant_direction(self, vacant: int) -> float:

@@ -7,13 +7,16 @@ angles in radians.
 import math
 from typing import Final
 
+import numpy as np
+
 from kswarms.agents.body import SENSORS
-from kswarms.agents.common.arrays import Floats, Integers
+from kswarms.agents.common.arrays import Floats, Integers, Rows
 from kswarms.agents.common.jit import compiled
 
 SECTOR: Final = 2.0 * math.pi / SENSORS  # angle covered by one sensor (rad)
-_COSINES: Final = tuple(math.cos(sensor * SECTOR) for sensor in range(SENSORS))
-_SINES: Final = tuple(math.sin(sensor * SECTOR) for sensor in range(SENSORS))
+# Arrays: a compiled function reads a tuple with a jump for each index.
+_COSINES: Final = np.array([math.cos(sensor * SECTOR) for sensor in range(SENSORS)])
+_SINES: Final = np.array([math.sin(sensor * SECTOR) for sensor in range(SENSORS)])
 _HALF_COSINE: Final = math.cos(SECTOR / 2.0)
 _HALF_SINE: Final = math.sin(SECTOR / 2.0)
 
@@ -34,9 +37,10 @@ ANGLES_OF: Final = [
 @compiled
 def wall_ray(x: float, y: float, dx: float, dy: float, half: float) -> float:
     """Return the distance from (x, y) to the walls along the unit vector (dx, dy)."""
-    along_x = (half - x) / dx if dx > 0.0 else ((-half - x) / dx if dx < 0.0 else math.inf)
-    along_y = (half - y) / dy if dy > 0.0 else ((-half - y) / dy if dy < 0.0 else math.inf)
-    return min(along_x, along_y)
+    # The wall on the side of the ray; without branches, half of whose predictions would fail.
+    gap_x = half - math.copysign(x, x * dx)
+    gap_y = half - math.copysign(y, y * dy)
+    return min(gap_x / abs(dx), gap_y / abs(dy))
 
 
 @compiled
@@ -84,8 +88,9 @@ def sense(
     robot: int,
     forward_x: float,
     forward_y: float,
-    positions: Floats,
-    others: Integers,
+    x: Floats,
+    y: Floats,
+    others: Rows,
     n_others: int,
     radius: float,
     half: float,
@@ -101,9 +106,9 @@ def sense(
     ----------
     forward_x, forward_y : float
         Unit vector of the heading of `robot`.
-    positions : ndarray of float64, shape (n, 2)
+    x, y : ndarray of float64, shape (n,)
         Centres of all robots.
-    others : ndarray of int64, shape (≥ n_others,)
+    others : ndarray of uint32, shape (≥ n_others,)
         Robots that may be in range; `robot` itself is skipped.
     n_others : int
         Number of valid entries of `others`.
@@ -112,41 +117,41 @@ def sense(
     free : ndarray of float64, shape (8,)
         Output: the distances, starting with the sensor ahead, counter-clockwise.
     """
-    x = positions[robot, 0]
-    y = positions[robot, 1]
+    own_x = x[robot]
+    own_y = y[robot]
+    for sensor in range(SENSORS):
+        free[sensor] = math.inf  # squared distance of the nearest robot
+    reach = 2.0 * radius + limit
+    for k in range(n_others):
+        other = others[k]
+        dx = x[other] - own_x
+        dy = y[other] - own_y
+        squared = dx * dx + dy * dy
+        if squared <= reach * reach and other != robot:
+            sensor = _sector(dx * forward_x + dy * forward_y, dy * forward_x - dx * forward_y)
+            free[sensor] = min(free[sensor], squared)
     for sensor in range(SENSORS):
         # A rotation of the heading is cheaper than a cosine and a sine for each sensor.
         dx = forward_x * _COSINES[sensor] - forward_y * _SINES[sensor]
         dy = forward_x * _SINES[sensor] + forward_y * _COSINES[sensor]
-        free[sensor] = wall_ray(x, y, dx, dy, half) - radius
-    reach = 2.0 * radius + limit
-    for k in range(n_others):
-        other = others[k]
-        dx = positions[other, 0] - x
-        dy = positions[other, 1] - y
-        squared = dx * dx + dy * dy
-        if other == robot or squared > reach * reach:
-            continue
-        sensor = _sector(dx * forward_x + dy * forward_y, dy * forward_x - dx * forward_y)
-        free[sensor] = min(free[sensor], math.sqrt(squared) - 2.0 * radius)
+        wall = wall_ray(own_x, own_y, dx, dy, half) - radius
+        free[sensor] = min(wall, math.sqrt(free[sensor]) - 2.0 * radius)
 
 
 @compiled
 def _sector(ahead: float, aside: float) -> int:
     """Return the sensor whose sector contains a direction.
 
-    Relative to the right edge of the sensor ahead, the sectors are octants. Comparisons are much faster than
-    an arctangent.
+    Relative to the right edge of the sensor ahead, the sectors are octants. Comparisons without branches are
+    much faster than an arctangent.
     """
     x = ahead * _HALF_COSINE - aside * _HALF_SINE
     y = aside * _HALF_COSINE + ahead * _HALF_SINE
-    if y > 0.0 or (y == 0.0 and x > 0.0):
-        if x > 0.0:
-            return 0 if y < x else 1
-        return 2 if y > -x else 3
-    if x < 0.0:
-        return 4 if y > x else 5
-    return 6 if -y > x else 7
+    quadrant = 0 if x > 0.0 else 1
+    if y < 0.0 or (y == 0.0 and x <= 0.0):
+        quadrant = 2 if x < 0.0 else 3
+    steep = abs(y) >= abs(x) if quadrant % 2 == 0 else abs(x) >= abs(y)
+    return 2 * quadrant + (1 if steep else 0)
 
 
 @compiled
@@ -155,7 +160,8 @@ def read_sensors(
     met: int,
     forward_x: float,
     forward_y: float,
-    positions: Floats,
+    x: Floats,
+    y: Floats,
     radius: float,
     half: float,
     nearest: Floats,
@@ -174,17 +180,17 @@ def read_sensors(
     read : ndarray of int64, shape (8,)
         −1 in all entries; set to the robot that each sensor reads.
     """
-    x = positions[robot, 0]
-    y = positions[robot, 1]
+    own_x = x[robot]
+    own_y = y[robot]
     for sensor in range(SENSORS):
         dx = forward_x * _COSINES[sensor] - forward_y * _SINES[sensor]
         dy = forward_x * _SINES[sensor] + forward_y * _COSINES[sensor]
-        nearest[sensor] = min(nearest[sensor], wall_ray(x, y, dx, dy, half) - radius)
-    for other in range(len(positions)):
+        nearest[sensor] = min(nearest[sensor], wall_ray(own_x, own_y, dx, dy, half) - radius)
+    for other in range(len(x)):
         if other == robot:
             continue
-        dx = positions[other, 0] - x
-        dy = positions[other, 1] - y
+        dx = x[other] - own_x
+        dy = y[other] - own_y
         sensor = _sector(dx * forward_x + dy * forward_y, dy * forward_x - dx * forward_y)
         gap = -math.inf if other == met else math.sqrt(dx * dx + dy * dy) - 2.0 * radius
         if gap <= nearest[sensor]:

@@ -4,28 +4,30 @@ A robot writes its row when it decides; the kernel moves the bodies and reads th
 angles radians in (−π, π], times control periods.
 """
 
-from typing import Final, cast
+from typing import Final, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kswarms.agents.common.arrays import Floats, Integers, Records
+from kswarms.agents.common.arrays import Floats, Integers
 from kswarms.agents.common.errors import InputError
 
-ROBOT: Final = np.dtype(
-    [
-        ("swarm", np.int64),  # swarm, counted from 0
-        ("phase", np.int64),  # one of the constants below
-        ("carrying", np.int64),  # 1 with a puck, 0 without
-        ("opponent", np.int64),  # opponent of the latest conflict, -1 before the first
-        ("heading", np.float64),  # direction (rad)
-        ("forward_x", np.float64),  # unit vector of the heading
-        ("forward_y", np.float64),
-        ("stride", np.float64),  # forward motion in a period (m), 0 while turning in place
-        ("turn_rate", np.float64),  # change of heading in a period (rad), 0 while driving
-    ]
-)
-"""Row of a robot."""
+
+class Bodies(NamedTuple):
+    """Contiguous arrays of the kernel, float64 or int64, shape (n,)."""
+
+    x: Floats  # centre (m)
+    y: Floats
+    heading: Floats  # direction (rad)
+    forward_x: Floats  # unit vector of the heading
+    forward_y: Floats
+    stride: Floats  # forward motion in a period (m), 0 while turning in place
+    turn_rate: Floats  # change of heading in a period (rad), 0 while driving
+    swarm: Integers  # swarm, counted from 0
+    phase: Integers  # one of the constants below
+    carrying: Integers  # 1 with a puck, 0 without
+    opponent: Integers  # opponent of the latest conflict, -1 before the first
+
 
 # Phases. ACTION is state A, all others are state P.
 IDLE: Final = 0  # waiting for a decision at the next percepts
@@ -45,50 +47,69 @@ _ROUNDING: Final = 1e-9  # maximum rounding error of a position (m)
 class RobotStates:
     """States of n robots.
 
+    Parameters
+    ----------
+    positions : ndarray of float64, shape (n, 2)
+        Centres (m). The array is copied unless its columns are contiguous.
+    swarm : ndarray of int64, shape (n,)
+        Swarm of each robot, from 0.
+    headings : ndarray of float64, shape (n,)
+        Headings (rad).
+
     Attributes
     ----------
     positions : ndarray of float64, shape (n, 2)
-        Centres (m). The array is shared with Mesa's space, not copied.
-    robots : ndarray of `ROBOT`, shape (n,)
-        The array for the kernel.
+        Centres (m). The array is shared with Mesa's space.
+    bodies : Bodies
+        The arrays for the kernel; `x` and `y` are the columns of `positions`.
     swarm, phase, carrying, opponent, heading, stride, turn_rate : memoryview, shape (n,)
-        Views of its fields; reading or writing one number is twice as fast as with arrays.
+        Views of the arrays; reading or writing one number is twice as fast as with arrays.
     numbers : list of int
         Number of the robot in each row. Numbers never change; rows change when a robot is removed.
     """
 
     def __init__(self, positions: Floats, swarm: Integers, headings: Floats) -> None:
-        self.positions = positions
-        self.numbers = list(range(len(swarm)))
-        self.robots: Records = np.zeros(len(swarm), dtype=ROBOT)
-        self.robots["swarm"] = swarm
-        self.robots["phase"] = IDLE
-        self.robots["opponent"] = -1
-        self.robots["heading"] = headings
-        self.robots["forward_x"] = np.cos(headings)
-        self.robots["forward_y"] = np.sin(headings)
+        n = len(swarm)
+        self.numbers = list(range(n))
+        self.positions = _by_columns(positions)
+        self.bodies = Bodies(
+            x=self.positions[:, 0],
+            y=self.positions[:, 1],
+            heading=headings.astype(np.float64),
+            forward_x=np.cos(headings),
+            forward_y=np.sin(headings),
+            stride=np.zeros(n),
+            turn_rate=np.zeros(n),
+            swarm=swarm.astype(np.int64),
+            phase=np.full(n, IDLE),
+            carrying=np.zeros(n, dtype=np.int64),
+            opponent=np.full(n, -1),
+        )
         self._view()
 
     def keep(self, rows: Integers, positions: Floats) -> None:
         """Keep only some rows, ascending, shape (m,); they become rows 0 … m − 1 in the same memory.
 
-        `positions` are the centres of these robots (m), shape (m, 2). The array is not copied.
+        `positions` are the centres of these robots (m), shape (m, 2), in contiguous columns.
         """
-        new_row = np.full(len(self.robots) + 1, -1)  # the last entry is for opponent −1
+        old = self.bodies
+        new_row = np.full(len(old.opponent) + 1, -1)  # the last entry is for opponent −1
         new_row[rows] = np.arange(len(rows))
-        self.robots["opponent"] = new_row[self.robots["opponent"]]
-        self.robots[: len(rows)] = self.robots[rows]
-        self.robots = self.robots[: len(rows)]
-        self.positions = positions
+        old.opponent[:] = new_row[old.opponent]
+        self.positions = _by_columns(positions)
+        for array in old[2:]:
+            array[: len(rows)] = array[rows]
+        columns = self.positions[:, 0], self.positions[:, 1]
+        self.bodies = Bodies._make((*columns, *(array[: len(rows)] for array in old[2:])))
         self.numbers = [self.numbers[row] for row in rows]
         self._view()
 
     def copy_row(self, row: int) -> "RobotStates":
         """Return a copy of the state of one robot."""
         rows = slice(row, row + 1)
-        robots = self.robots[rows]
-        copy = RobotStates(self.positions[rows].copy(), robots["swarm"], robots["heading"])
-        copy.robots[:] = robots
+        copy = RobotStates(self.positions[rows].copy(), self.bodies.swarm[rows], self.bodies.heading[rows])
+        for new, old in zip(copy.bodies, self.bodies, strict=True):
+            new[:] = old[rows]
         return copy
 
     def move(self, row: int, place: ArrayLike, half: float, radius: float) -> None:
@@ -111,10 +132,16 @@ class RobotStates:
         self.positions[row] = point
 
     def _view(self) -> None:
-        self.swarm = self.robots["swarm"].data
-        self.phase = self.robots["phase"].data
-        self.carrying = self.robots["carrying"].data
-        self.opponent = self.robots["opponent"].data
-        self.heading = cast("memoryview[float]", self.robots["heading"].data)
-        self.stride = cast("memoryview[float]", self.robots["stride"].data)
-        self.turn_rate = cast("memoryview[float]", self.robots["turn_rate"].data)
+        bodies = self.bodies
+        self.swarm = bodies.swarm.data
+        self.phase = bodies.phase.data
+        self.carrying = bodies.carrying.data
+        self.opponent = bodies.opponent.data
+        self.heading = cast("memoryview[float]", bodies.heading.data)
+        self.stride = cast("memoryview[float]", bodies.stride.data)
+        self.turn_rate = cast("memoryview[float]", bodies.turn_rate.data)
+
+
+def _by_columns(positions: Floats) -> Floats:
+    """Return an array with contiguous columns: the same one if it has them."""
+    return positions if positions.strides[0] == positions.itemsize else np.asfortranarray(positions)

@@ -9,6 +9,7 @@ from typing import Final
 
 from kswarms.agents.common.jit import compiled
 from kswarms.agents.robot.sensing import wrap
+from kswarms.agents.robot.state import Bodies
 from kswarms.model.kernel.arrays import Memory
 from kswarms.model.kernel.contacts import JAMMED, separate, translate
 from kswarms.model.kernel.neighbours import refresh
@@ -31,9 +32,7 @@ def advance(m: Memory, tick: int, until: int) -> tuple[int, int]:
     the pick-ups and deposits of period `until` are done, its percepts are done too, but no motion. Raise a
     ValueError if overlapping bodies cannot be separated.
     """
-    positions, stage = m.positions, m.scalars["stage"]
-    heading, turn_rate = m.robots["heading"], m.robots["turn_rate"]
-    forward_x, forward_y = m.robots["forward_x"], m.robots["forward_y"]
+    stage = m.scalars["stage"]
     while tick < until or stage[0] != PUCKS:
         if stage[0] == PUCKS:
             stage[0] = PERCEPTS
@@ -48,16 +47,24 @@ def advance(m: Memory, tick: int, until: int) -> tuple[int, int]:
                 return tick, size
         if tick == until:
             return tick, 0
-        for i in range(len(positions)):
-            if turn_rate[i] != 0.0:
-                heading[i] = wrap(heading[i] + turn_rate[i])
-                forward_x[i] = math.cos(heading[i])
-                forward_y[i] = math.sin(heading[i])
+        _turn(m.bodies)
         translate(m)
         _separate_unlisted(m)
         stage[0] = PUCKS
         tick += 1
     return tick, 0
+
+
+@compiled
+def _turn(bodies: Bodies) -> None:
+    """Turn all bodies by one period."""
+    heading, turn_rate = bodies.heading, bodies.turn_rate
+    forward_x, forward_y = bodies.forward_x, bodies.forward_y
+    for i in range(len(heading)):
+        if turn_rate[i] != 0.0:
+            heading[i] = wrap(heading[i] + turn_rate[i])
+            forward_x[i] = math.cos(heading[i])
+            forward_y[i] = math.sin(heading[i])
 
 
 @compiled

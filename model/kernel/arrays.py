@@ -5,7 +5,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from kswarms.agents.body import SENSORS
-from kswarms.agents.common.arrays import Floats, Integers, Records
+from kswarms.agents.common.arrays import Floats, Integers, Records, Rows
+from kswarms.agents.robot.state import Bodies
 
 SCALARS: Final = np.dtype(
     [
@@ -15,7 +16,6 @@ SCALARS: Final = np.dtype(
         ("front_cosine", np.float64),  # cosine of the front half-angle
         ("flight_range", np.float64),  # cut-off of free distances
         ("active_range", np.float64),  # a sensor is active up to it
-        ("ring_reach", np.float64),  # other robots within it, centre to centre, affect the sensors
         ("wall_reach", np.float64),  # wall distance, from the centre
         ("wall_half_angle", np.float64),  # between the rays that detect walls
         ("base_range", np.float64),  # the own base is visible within it
@@ -37,34 +37,36 @@ SCALARS: Final = np.dtype(
 STATION: Final = np.dtype([("x", np.float64), ("y", np.float64), ("supply", np.int64)])
 """A supply station: its centre and the pucks left, negative for no limit."""
 
-PAIR: Final = np.dtype(
-    [
-        ("first", np.int64),  # the robot with the lower row
-        ("second", np.int64),
-        ("close_first", np.int64),  # row k: the k-th pair that nearly touches
-        ("close_second", np.int64),
-    ]
-)
-"""Two robots near each other."""
 
-WORK: Final = np.dtype(
-    [
-        ("move_x", np.float64),  # displacement in this period
-        ("move_y", np.float64),
-        ("shove_x", np.float64),  # displacement by others; in the relaxation, correction of one pass
-        ("shove_y", np.float64),
-        ("count", np.int64),  # contacts; in the relaxation, overlaps
-        ("queued", np.int64),  # whether the relaxation may move it
-        ("queue", np.int64),  # row k: the k-th robot that the relaxation may move
-        ("origin_x", np.float64),  # position at the last rebuild of the pairs, NaN before the first
-        ("origin_y", np.float64),
-        ("cell_robots", np.int64),  # robots ordered by cell, ascending in each cell
-        ("found", np.int64),  # result of `within`: robots near a point
-        ("nearest", np.int64),  # nearest robot ahead, -1 for none
-        ("squared", np.float64),  # its distance, squared
-    ]
-)
-"""Working memory, one row per robot."""
+class Pairs(NamedTuple):
+    """Pairs of robots near each other, arrays of length `capacity`."""
+
+    first: Rows  # the robot with the lower row
+    second: Rows
+    close_first: Rows  # row k: the k-th pair that nearly touches
+    close_second: Rows
+
+
+class Work(NamedTuple):
+    """Working memory, arrays of length n."""
+
+    move_x: Floats  # displacement in this period
+    move_y: Floats
+    shove_x: Floats  # displacement by others; in the relaxation, correction of one pass
+    shove_y: Floats
+    touches: Integers  # contacts; in the relaxation, overlaps
+    queued: Integers  # whether the relaxation may move it
+    queue: Rows  # row k: the k-th robot that the relaxation may move; one element more
+    origin_x: Floats  # position at the last rebuild of the pairs, NaN before the first
+    origin_y: Floats
+    cell: Integers  # cell at the last rebuild
+    cell_robots: Rows  # robots ordered by cell, ascending in each cell
+    found: Rows  # result of `within`: robots near a point
+    nearest: Integers  # nearest robot ahead, -1 for none
+    squared: Floats  # its distance, squared
+
+
+_DTYPES: Final[dict[object, type]] = {Floats: np.float64, Integers: np.int64, Rows: np.uint32}
 
 CONTACT: Final = np.dtype(
     [
@@ -104,13 +106,24 @@ LEG_DUE: Final = 7
 class Memory(NamedTuple):
     """Arrays of one game with n robots, S stations and K swarms."""
 
-    positions: Floats  # float64, shape (n, 2): centres
-    robots: Records  # `kswarms.agents.robot.state.ROBOT`, shape (n,)
+    bodies: Bodies
     scalars: Records  # `SCALARS`, shape (1,)
     stations: Records  # `STATION`, shape (S,)
     bases: Floats  # float64, shape (K, 2): centres
-    work: Records  # `WORK`, shape (n,)
+    work: Work
     contacts: Records  # `CONTACT`, shape (n, MAX_CONTACTS)
-    pairs: Records  # `PAIR`, shape (capacity,)
+    pairs: Pairs
     cell_start: Integers  # int64, shape (cells² + 1,): start of each cell in the `WORK` field ``cell_robots``
     events: Records  # `EVENT`, shape (n,)
+
+
+def make_work(n: int) -> Work:
+    """Return working memory for n robots."""
+    work = Work(*(np.zeros(n, dtype=_DTYPES[kind]) for kind in Work.__annotations__.values()))
+    work.origin_x[:] = np.nan  # no neighbours listed yet
+    return work._replace(queue=np.zeros(n + 1, dtype=np.uint32))
+
+
+def make_pairs(capacity: int) -> Pairs:
+    """Return a list for at most `capacity` pairs."""
+    return Pairs(*(np.zeros(capacity, dtype=np.uint32) for _ in Pairs._fields))

@@ -13,6 +13,7 @@ from typing import Final
 from kswarms.agents.common.arrays import Integers, Records
 from kswarms.agents.common.jit import compiled
 from kswarms.model.kernel.arrays import MAX_CONTACTS, Memory
+from kswarms.model.kernel.neighbours import list_close
 from kswarms.model.kernel.relaxation import relax
 
 JAMMED: Final = "overlapping bodies cannot be separated: too many robots, or too long a period"
@@ -21,11 +22,11 @@ JAMMED: Final = "overlapping bodies cannot be separated: too many robots, or too
 @compiled
 def translate(m: Memory) -> None:
     """Move all bodies by one period; raise a ValueError if overlaps remain."""
-    positions, robots, work = m.positions, m.robots, m.work
-    stride, forward_x, forward_y = robots["stride"], robots["forward_x"], robots["forward_y"]
-    move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
-    count, friction = work["count"], m.scalars["friction"][0]
-    n = len(positions)
+    x, y, stride = m.bodies.x, m.bodies.y, m.bodies.stride
+    forward_x, forward_y = m.bodies.forward_x, m.bodies.forward_y
+    move_x, move_y, shove_x, shove_y = m.work.move_x, m.work.move_y, m.work.shove_x, m.work.shove_y
+    count, friction = m.work.touches, m.scalars["friction"][0]
+    n = len(x)
     fastest = 0.0
     for i in range(n):
         fastest = max(fastest, stride[i])
@@ -41,8 +42,8 @@ def translate(m: Memory) -> None:
         if count[i] > 0:
             crowded = True
             move_x[i], move_y[i] = _slide(move_x[i], move_y[i], friction, m.contacts[i], count[i])
-        positions[i, 0] += move_x[i] + shove_x[i]
-        positions[i, 1] += move_y[i] + shove_y[i]
+        x[i] += move_x[i] + shove_x[i]
+        y[i] += move_y[i] + shove_y[i]
     if crowded:
         separate(m)
 
@@ -51,29 +52,26 @@ def translate(m: Memory) -> None:
 def separate(m: Memory) -> None:
     """Relax overlaps; raise a ValueError if overlaps remain."""
     radius, half, n_pairs = m.scalars["radius"][0], m.scalars["half"][0], m.scalars["n_pairs"][0]
-    if relax(m.positions, radius, half, m.work, m.pairs, n_pairs) < 0:
+    if relax(m.bodies.x, m.bodies.y, radius, half, m.work, m.pairs, n_pairs) < 0:
         raise ValueError(JAMMED)
 
 
 @compiled
 def _meet_bodies(m: Memory, fastest: float) -> None:
     """Find the pairs that would overlap, and the part of each motion that is blocked."""
-    positions, work, contacts = m.positions, m.work, m.contacts
-    move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
-    count, first, second = work["count"], m.pairs["first"], m.pairs["second"]
-    stride, radius, push_share = m.robots["stride"], m.scalars["radius"][0], m.scalars["push_share"][0]
+    x, y, stride, work, contacts = m.bodies.x, m.bodies.y, m.bodies.stride, m.work, m.contacts
+    move_x, move_y, shove_x, shove_y = work.move_x, work.move_y, work.shove_x, work.shove_y
+    count, first, second = work.touches, m.pairs.close_first, m.pairs.close_second
+    radius, push_share = m.scalars["radius"][0], m.scalars["push_share"][0]
     reach = 2.0 * radius + 2.0 * fastest
-    for k in range(m.scalars["n_pairs"][0]):
+    for k in range(list_close(x, y, m.pairs, m.scalars["n_pairs"][0], reach)):
         i = first[k]
         j = second[k]
         if stride[i] == 0.0 and stride[j] == 0.0:
             continue
-        dx = positions[j, 0] - positions[i, 0]
-        dy = positions[j, 1] - positions[i, 1]
-        squared = dx * dx + dy * dy
-        if squared >= reach * reach:
-            continue
-        distance = math.sqrt(squared)
+        dx = x[j] - x[i]
+        dy = y[j] - y[i]
+        distance = math.sqrt(dx * dx + dy * dy)
         if distance == 0.0:
             continue  # no direction: the relaxation separates them
         dx /= distance
@@ -100,14 +98,14 @@ def _meet_bodies(m: Memory, fastest: float) -> None:
 @compiled
 def _meet_walls(m: Memory) -> None:
     """Find the robots that would leave the arena, and the part of each motion that is blocked."""
-    positions, radius, half = m.positions, m.scalars["radius"][0], m.scalars["half"][0]
-    move_x, move_y, count = m.work["move_x"], m.work["move_y"], m.work["count"]
-    for i in range(len(positions)):
+    x, y, radius, half = m.bodies.x, m.bodies.y, m.scalars["radius"][0], m.scalars["half"][0]
+    move_x, move_y, count = m.work.move_x, m.work.move_y, m.work.touches
+    for i in range(len(x)):
         for axis in range(2):
             move = move_x[i] if axis == 0 else move_y[i]
             sign = 1.0 if move > 0.0 else -1.0
             towards = sign * move
-            gap = max(0.0, half - radius - sign * positions[i, axis])
+            gap = max(0.0, half - radius - sign * (x[i] if axis == 0 else y[i]))
             if towards > gap:
                 nx = sign if axis == 0 else 0.0
                 ny = sign if axis == 1 else 0.0

@@ -12,7 +12,16 @@ from kswarms.agents.robot.state import RobotStates
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game
 from kswarms.model.kernel.advance import PUCKS, advance
-from kswarms.model.kernel.arrays import CONTACT, EVENT, MAX_CONTACTS, PAIR, SCALARS, STATION, WORK, Memory
+from kswarms.model.kernel.arrays import (
+    CONTACT,
+    EVENT,
+    MAX_CONTACTS,
+    SCALARS,
+    STATION,
+    Memory,
+    make_pairs,
+    make_work,
+)
 from kswarms.model.kernel.neighbours import room_for_pairs
 
 _MAX_CELLS: Final = 1024
@@ -45,17 +54,14 @@ class Kernel:
         stations["supply"] = game.supply or -1
         pair_reach = float(scalars["pair_reach"][0])
         cells = max(1, min(_MAX_CELLS, int(2 * arena.half / pair_reach)))
-        work: Records = np.zeros(n, dtype=WORK)
-        work["origin_x"] = np.nan  # no neighbours listed yet
         self.memory = Memory(
-            positions=states.positions,
-            robots=states.robots,
+            bodies=states.bodies,
             scalars=scalars,
             stations=stations,
             bases=arena.bases,
-            work=work,
+            work=make_work(n),
             contacts=np.zeros((n, MAX_CONTACTS), dtype=CONTACT),
-            pairs=np.zeros(room_for_pairs(n, pair_reach, game.body.radius), dtype=PAIR),
+            pairs=make_pairs(room_for_pairs(n, pair_reach, game.body.radius)),
             cell_start=np.zeros(cells * cells + 1, dtype=np.int64),
             events=np.zeros(n, dtype=EVENT),
         )
@@ -103,6 +109,4 @@ def make_scalars(game: Game, arena: Arena) -> Records:
     # In a period, two robots approach by at most two strides, and relaxation moves each by up to three more.
     touching = 2 * radius + 8 * fastest
     scalars["pair_reach"] = np.maximum(scalars["conflict_reach"], touching) + scalars["skin"]
-    farthest = np.maximum(scalars["flight_range"], scalars["active_range"])
-    scalars["ring_reach"] = 2 * radius + farthest + scalars["skin"] / 2
     return scalars

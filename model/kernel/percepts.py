@@ -11,7 +11,7 @@ from kswarms.agents.common.jit import compiled
 from kswarms.agents.robot.sensing import sense, walls_met, wrap
 from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, HOMING_ERROR, LEG, LEG_OVER, TURN
 from kswarms.model.kernel.arrays import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE, WALL, Memory
-from kswarms.model.kernel.neighbours import within
+from kswarms.model.kernel.neighbours import list_close, within
 
 
 @compiled
@@ -20,14 +20,14 @@ def find_pucks(m: Memory) -> int:
 
     Returns the number of events, which are written to ``m.events``.
     """
-    positions, bases, events = m.positions, m.bases, m.events
+    bodies, bases, events = m.bodies, m.bases, m.events
     station_reach, base_reach = m.scalars["station_radius"][0] ** 2, m.scalars["base_radius"][0] ** 2
-    swarm, carrying = m.robots["swarm"], m.robots["carrying"]
+    swarm, carrying = bodies.swarm, bodies.carrying
     station_x, station_y, supply = m.stations["x"], m.stations["y"], m.stations["supply"]
     size = 0
-    for i in range(len(positions)):
-        x = positions[i, 0]
-        y = positions[i, 1]
+    for i in range(len(swarm)):
+        x = bodies.x[i]
+        y = bodies.y[i]
         if carrying[i]:
             dx = x - bases[swarm[i], 0]
             dy = y - bases[swarm[i], 1]
@@ -54,24 +54,23 @@ def _look_ahead(m: Memory) -> None:
 
     Pairs of robots that both resolve a conflict are skipped unless actions can be interrupted.
     """
-    positions, forward_x, forward_y = m.positions, m.robots["forward_x"], m.robots["forward_y"]
-    nearest, squares = m.work["nearest"], m.work["squared"]
-    first, second, phase = m.pairs["first"], m.pairs["second"], m.robots["phase"]
-    preempt = m.scalars["preempt"][0]
-    limit, front_cosine = m.scalars["conflict_reach"][0] ** 2, m.scalars["front_cosine"][0]
-    for i in range(len(positions)):
+    x, y, phase = m.bodies.x, m.bodies.y, m.bodies.phase
+    forward_x, forward_y = m.bodies.forward_x, m.bodies.forward_y
+    nearest, squares = m.work.nearest, m.work.squared
+    first, second = m.pairs.close_first, m.pairs.close_second
+    scalars, preempt, reach = m.scalars, m.scalars["preempt"][0], m.scalars["conflict_reach"][0]
+    limit, front_cosine = reach * reach, scalars["front_cosine"][0]
+    for i in range(len(x)):
         nearest[i] = -1
         squares[i] = limit
-    for k in range(m.scalars["n_pairs"][0]):
+    for k in range(list_close(x, y, m.pairs, scalars["n_pairs"][0], reach)):
         i = first[k]
         j = second[k]
         if phase[i] == ACTION and phase[j] == ACTION and not preempt:
             continue
-        dx = positions[j, 0] - positions[i, 0]
-        dy = positions[j, 1] - positions[i, 1]
+        dx = x[j] - x[i]
+        dy = y[j] - y[i]
         squared = dx * dx + dy * dy
-        if squared > limit:
-            continue
         ahead = front_cosine * math.sqrt(squared)
         if squared <= squares[i] and dx * forward_x[i] + dy * forward_y[i] >= ahead:
             nearest[i] = j
@@ -87,34 +86,33 @@ def perceive(m: Memory) -> int:
 
     Returns the number of events, which are written to ``m.events``.
     """
-    positions, robots, scalars, bases = m.positions, m.robots, m.scalars, m.bases
+    bodies, scalars, bases = m.bodies, m.scalars, m.bases
     radius, half, preempt = scalars["radius"][0], scalars["half"][0], scalars["preempt"][0]
     wall_reach, wall_half_angle = scalars["wall_reach"][0], scalars["wall_half_angle"][0]
     flight_range, active_range = scalars["flight_range"][0], scalars["active_range"][0]
-    base_reach, ring_reach = scalars["base_range"][0] ** 2, scalars["ring_reach"][0]
-    forward_x, forward_y = robots["forward_x"], robots["forward_y"]
-    heading, phase, swarm = robots["heading"], robots["phase"], robots["swarm"]
-    opponent, carrying = robots["opponent"], robots["carrying"]
-    nearest, found, free = m.work["nearest"], m.work["found"], scalars["free"][0]
+    farthest, base_reach = max(flight_range, active_range), scalars["base_range"][0] ** 2
+    forward_x, forward_y, heading = bodies.forward_x, bodies.forward_y, bodies.heading
+    phase, swarm, opponent, carrying = bodies.phase, bodies.swarm, bodies.opponent, bodies.carrying
+    nearest, found, free = m.work.nearest, m.work.found, scalars["free"][0]
     _look_ahead(m)
     size = 0
-    for i in range(len(positions)):
+    for i in range(len(phase)):
         doing = phase[i]
-        x = positions[i, 0]
-        y = positions[i, 1]
+        x = bodies.x[i]
+        y = bodies.y[i]
         other = nearest[i]
         event = m.events[size]
         if other >= 0 and (doing != ACTION or (preempt and other != opponent[i])):
-            n_found = within(m, x, y, ring_reach)
-            farthest = max(flight_range, active_range)
-            sense(i, forward_x[i], forward_y[i], positions, found, n_found, radius, half, farthest, free)
+            n_found = within(m, x, y, 2.0 * radius + farthest)
+            forward = forward_x[i], forward_y[i]
+            sense(i, *forward, bodies.x, bodies.y, found, n_found, radius, half, farthest, free)
             active, vacant = _read_ring(free, flight_range, active_range)
             event["robot"] = i
             event["kind"] = CONFLICT
             event["other"] = other
             event["active"] = active
             event["vacant"] = vacant
-            event["angle"] = wrap(math.atan2(positions[other, 1] - y, positions[other, 0] - x) - heading[i])
+            event["angle"] = wrap(math.atan2(bodies.y[other] - y, bodies.x[other] - x) - heading[i])
             size += 1
             continue
         if doing == ACTION or doing == TURN or doing == HOME_TURN:

@@ -8,8 +8,10 @@ a growing part of the last pass's move (Nesterov 1983) gives nearly the same res
 import math
 from typing import Final
 
-from kswarms.agents.common.arrays import Floats, Records
+from kswarms.agents.common.arrays import Floats
 from kswarms.agents.common.jit import compiled
+from kswarms.model.kernel.arrays import Pairs, Work
+from kswarms.model.kernel.neighbours import list_close
 
 TOLERANCE: Final = 0.9e-4
 """Overlap at which the relaxation stops (m); the specification allows 0.1 mm."""
@@ -40,18 +42,18 @@ _AT_REST: Final = 1e-5
 
 
 @compiled
-def relax(positions: Floats, radius: float, half: float, work: Records, pairs: Records, n_pairs: int) -> int:
+def relax(x: Floats, y: Floats, radius: float, half: float, work: Work, pairs: Pairs, n_pairs: int) -> int:
     """Separate overlapping bodies and keep them within the walls.
 
     Parameters
     ----------
-    positions : ndarray of float64, shape (n, 2)
+    x, y : ndarray of float64, shape (n,)
         Centres (m); written.
     radius, half : float
         Radius of the bodies; half the side of the arena (m).
-    work : ndarray of `kswarms.model.kernel.arrays.WORK`, shape (n,)
+    work : Work
         Written.
-    pairs : ndarray of `kswarms.model.kernel.arrays.PAIR`, shape (≥ n_pairs,)
+    pairs : Pairs
         All pairs that can overlap; written: close pairs.
     n_pairs : int
         Number of pairs.
@@ -61,40 +63,39 @@ def relax(positions: Floats, radius: float, half: float, work: Records, pairs: R
     int
         Number of passes, −1 if it did not converge.
     """
-    move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
-    count, limit = work["count"], half - radius
-    for i in range(len(positions)):
-        positions[i, 0] = min(limit, max(-limit, positions[i, 0]))
-        positions[i, 1] = min(limit, max(-limit, positions[i, 1]))
+    move_x, move_y, shove_x, shove_y = work.move_x, work.move_y, work.shove_x, work.shove_y
+    count, limit = work.touches, half - radius
+    for i in range(len(x)):
+        x[i] = min(limit, max(-limit, x[i]))
+        y[i] = min(limit, max(-limit, y[i]))
     done = 0
     while done < _MAX_PASSES:
-        n_close, worst = _find_close(positions, radius, pairs, n_pairs)
-        if worst <= TOLERANCE:
-            return done
-        for i in range(len(positions)):
+        n_close = list_close(x, y, pairs, n_pairs, (2.0 + _CLOSE) * radius)
+        for i in range(len(x)):
             move_x[i] = 0.0
             move_y[i] = 0.0
             shove_x[i] = 0.0
             shove_y[i] = 0.0
             count[i] = 0
+        if _measure_overlaps(x, y, radius, work, pairs, n_close) <= TOLERANCE:
+            return done
         n_queued = _queue_bodies(work, pairs, n_close)
         if done >= _STUCK:
-            _bend(positions, radius, work, pairs, n_close)
-        for _ in range(_PASSES):
+            _bend(x, y, radius, work, pairs, n_close)
+        for k in range(_PASSES):
             if done % _FORGET_EVERY == _FORGET_AFTER:
-                n_close = _forget_resting(positions, radius, work, pairs, n_close)
+                n_close = _forget_resting(x, y, radius, work, pairs, n_close)
                 n_queued = _queue_bodies(work, pairs, n_close)
-            worst = _measure_overlaps(positions, radius, work, pairs, n_close)
-            if worst <= TOLERANCE:
+            if k > 0 and _measure_overlaps(x, y, radius, work, pairs, n_close) <= TOLERANCE:
                 break
-            _move_bodies(positions, limit, work, n_queued, _momentum(done))
+            _move_bodies(x, y, limit, work, n_queued, _momentum(done))
             done += 1
     return -1
 
 
 @compiled
-def _offset(positions: Floats, i: int, j: int) -> tuple[float, float]:
-    return positions[j, 0] - positions[i, 0], positions[j, 1] - positions[i, 1]
+def _offset(x: Floats, y: Floats, i: int, j: int) -> tuple[float, float]:
+    return x[j] - x[i], y[j] - y[i]
 
 
 @compiled
@@ -103,33 +104,14 @@ def _overlap(dx: float, dy: float, radius: float) -> bool:
 
 
 @compiled
-def _find_close(positions: Floats, radius: float, pairs: Records, n_pairs: int) -> tuple[int, float]:
-    """List the close pairs; return their number and the greatest overlap (m)."""
-    first, second = pairs["first"], pairs["second"]
-    close_first, close_second = pairs["close_first"], pairs["close_second"]
-    reach = (2.0 + _CLOSE) * radius
-    nearest = reach * reach
-    n_close = 0
-    for k in range(n_pairs):
-        dx, dy = _offset(positions, first[k], second[k])
-        squared = dx * dx + dy * dy
-        if squared < reach * reach:
-            close_first[n_close] = first[k]
-            close_second[n_close] = second[k]
-            n_close += 1
-            nearest = min(nearest, squared)
-    return n_close, 2.0 * radius - math.sqrt(nearest)
-
-
-@compiled
-def _bend(positions: Floats, radius: float, work: Records, pairs: Records, n_close: int) -> None:
+def _bend(x: Floats, y: Floats, radius: float, work: Work, pairs: Pairs, n_close: int) -> None:
     """Rotate each overlapping pair slightly about its centre, all in the same sense, to break the row."""
-    close_first, close_second = pairs["close_first"], pairs["close_second"]
-    shove_x, shove_y = work["shove_x"], work["shove_y"]
+    close_first, close_second = pairs.close_first, pairs.close_second
+    shove_x, shove_y = work.shove_x, work.shove_y
     for c in range(n_close):
         i = close_first[c]
         j = close_second[c]
-        dx, dy = _offset(positions, i, j)
+        dx, dy = _offset(x, y, i, j)
         if _overlap(dx, dy, radius):
             shove_x[i] += _TURN * dy
             shove_y[i] -= _TURN * dx
@@ -138,50 +120,48 @@ def _bend(positions: Floats, radius: float, work: Records, pairs: Records, n_clo
 
 
 @compiled
-def _queue_bodies(work: Records, pairs: Records, n_close: int) -> int:
+def _queue_bodies(work: Work, pairs: Pairs, n_close: int) -> int:
     """List the bodies of the close pairs; return their number."""
-    close_first, close_second = pairs["close_first"], pairs["close_second"]
-    queued, queue = work["queued"], work["queue"]
-    for i in range(len(work)):
+    close_first, close_second = pairs.close_first, pairs.close_second
+    queued, queue = work.queued, work.queue
+    for i in range(len(queued)):
         queued[i] = 0
     size = 0
     for c in range(n_close):
         for i in (close_first[c], close_second[c]):
-            if not queued[i]:
-                queued[i] = 1
-                queue[size] = i
-                size += 1
+            queue[size] = i
+            size += 1 - queued[i]
+            queued[i] = 1
     return size
 
 
 @compiled
-def _forget_resting(positions: Floats, radius: float, work: Records, pairs: Records, n_close: int) -> int:
+def _forget_resting(x: Floats, y: Floats, radius: float, work: Work, pairs: Pairs, n_close: int) -> int:
     """Keep the close pairs that overlap or move; return their number."""
-    close_first, close_second = pairs["close_first"], pairs["close_second"]
-    move_x, move_y = work["move_x"], work["move_y"]
+    close_first, close_second = pairs.close_first, pairs.close_second
+    move_x, move_y = work.move_x, work.move_y
     kept = 0
     for c in range(n_close):
         i = close_first[c]
         j = close_second[c]
-        dx, dy = _offset(positions, i, j)
+        dx, dy = _offset(x, y, i, j)
         moves = abs(move_x[i]) + abs(move_y[i]) + abs(move_x[j]) + abs(move_y[j])
-        if moves > _AT_REST or _overlap(dx, dy, radius):
-            close_first[kept] = i
-            close_second[kept] = j
-            kept += 1
+        close_first[kept] = i
+        close_second[kept] = j
+        kept += int(moves > _AT_REST) | int(_overlap(dx, dy, radius))
     return kept
 
 
 @compiled
-def _measure_overlaps(positions: Floats, radius: float, work: Records, pairs: Records, n_close: int) -> float:
+def _measure_overlaps(x: Floats, y: Floats, radius: float, work: Work, pairs: Pairs, n_close: int) -> float:
     """Add half of each overlap to the corrections of both bodies; return the greatest overlap (m)."""
-    close_first, close_second = pairs["close_first"], pairs["close_second"]
-    shove_x, shove_y, count = work["shove_x"], work["shove_y"], work["count"]
+    close_first, close_second = pairs.close_first, pairs.close_second
+    shove_x, shove_y, count = work.shove_x, work.shove_y, work.touches
     worst = 0.0
     for c in range(n_close):
         i = close_first[c]
         j = close_second[c]
-        dx, dy = _offset(positions, i, j)
+        dx, dy = _offset(x, y, i, j)
         # No branch for pairs without overlap: in a jam, half of the branch predictions would fail.
         distance = math.sqrt(dx * dx + dy * dy)
         overlap = max(0.0, 2.0 * radius - distance)
@@ -207,13 +187,13 @@ def _momentum(done: int) -> float:
 
 
 @compiled
-def _move_bodies(positions: Floats, limit: float, work: Records, n_queued: int, momentum: float) -> None:
+def _move_bodies(x: Floats, y: Floats, limit: float, work: Work, n_queued: int, momentum: float) -> None:
     """Move the queued bodies by their summed corrections, within the walls, and reset the sums.
 
     A body without overlap loses its momentum, which would push it into the next body.
     """
-    move_x, move_y, shove_x, shove_y = work["move_x"], work["move_y"], work["shove_x"], work["shove_y"]
-    count, queue = work["count"], work["queue"]
+    move_x, move_y, shove_x, shove_y = work.move_x, work.move_y, work.shove_x, work.shove_y
+    count, queue = work.touches, work.queue
     for q in range(n_queued):
         i = queue[q]
         # The sum of three or more corrections would overshoot; twice their mean does not.
@@ -221,8 +201,8 @@ def _move_bodies(positions: Floats, limit: float, work: Records, n_queued: int, 
         kept = momentum if count[i] > 0 else 0.0
         move_x[i] = kept * move_x[i] + scale * shove_x[i]
         move_y[i] = kept * move_y[i] + scale * shove_y[i]
-        positions[i, 0] = min(limit, max(-limit, positions[i, 0] + move_x[i]))
-        positions[i, 1] = min(limit, max(-limit, positions[i, 1] + move_y[i]))
+        x[i] = min(limit, max(-limit, x[i] + move_x[i]))
+        y[i] = min(limit, max(-limit, y[i] + move_y[i]))
         shove_x[i] = 0.0
         shove_y[i] = 0.0
         count[i] = 0

@@ -93,15 +93,15 @@ class Player:
         """Return the current state."""
         with self._lock:
             states = self.model.states
-            robots = states.robots
+            bodies = states.bodies
             return Snapshot(
                 self.time,
                 tuple(robot.number for robot in self.model.robots),
                 states.positions.copy(),
-                robots["heading"].copy(),
-                robots["swarm"].copy(),
-                robots["phase"] == ACTION,
-                robots["carrying"] > 0,
+                bodies.heading.copy(),
+                bodies.swarm.copy(),
+                bodies.phase == ACTION,
+                bodies.carrying > 0,
                 tuple(self.model.pucks),
             )
 

@@ -89,10 +89,10 @@ def view_robot(model: GameModel, number: int) -> RobotView | None:
 def _read_sensors(model: GameModel, index: int) -> tuple[Sensor, ...]:
     body, parameters = model.game.body, model.game.parameters
     reach = body.sensor_range
-    row = model.states.robots[index]
+    bodies = model.states.bodies
     free = np.empty(SENSORS)
-    others = np.arange(len(model.robots))
-    state = row["forward_x"], row["forward_y"], model.states.positions
+    others = np.arange(len(model.robots), dtype=np.uint32)
+    state = bodies.forward_x[index], bodies.forward_y[index], bodies.x, bodies.y
     sense(index, *state, others, len(others), body.radius, model.arena.half, reach, free)
     limit = body.sensing_scale * parameters.active_range
     return tuple(

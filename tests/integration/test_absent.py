@@ -206,14 +206,14 @@ def test_a_robot_without_conflicts_may_be_removed_early_or_late(preempt: bool) -
 
 def test_removal_keeps_the_latest_opponents() -> None:
     states = RobotStates(np.zeros((5, 2)), np.array([0, 0, 1, 1, 1]), np.arange(5.0))
-    states.robots["opponent"] = [-1, 4, 1, 0, 3]
-    memory = states.robots
+    states.bodies.opponent[:] = [-1, 4, 1, 0, 3]
+    memory = states.bodies.heading
     states.keep(np.array([0, 2, 4]), np.zeros((3, 2)))
-    assert states.robots["opponent"].tolist() == [-1, -1, -1]
+    assert states.bodies.opponent.tolist() == [-1, -1, -1]
     assert states.heading.tolist() == [0.0, 2.0, 4.0]
     assert states.swarm.tolist() == [0, 1, 1]
-    assert np.shares_memory(states.robots, memory)
+    assert np.shares_memory(states.bodies.heading, memory)
 
-    states.robots["opponent"] = [2, 0, 1]
+    states.bodies.opponent[:] = [2, 0, 1]
     states.keep(np.array([1, 2]), np.zeros((2, 2)))
     assert states.opponent.tolist() == [-1, 0]

@@ -81,7 +81,7 @@ def test_recording_does_not_change_the_game(name: str, record: str, sample_perio
     watched.play()
     assert watched.results() == plain.results()
     assert watched.states.positions.tobytes() == plain.states.positions.tobytes()
-    assert watched.states.robots.tobytes() == plain.states.robots.tobytes()
+    assert np.array_equal(watched.states.bodies, plain.states.bodies)
 
 
 @pytest.mark.parametrize("name", GAMES)
@@ -92,7 +92,7 @@ def test_other_seeds_give_other_games(name: str) -> None:
 def start(**arguments: object) -> tuple[np.ndarray, ForagingModel]:
     """Return the poses at the start of a game, and the game."""
     model = ForagingModel(**{"n": 12, "seed": 4, **arguments})  # type: ignore[arg-type]
-    return np.column_stack([model.states.positions, model.states.robots["heading"]]), model
+    return np.column_stack([model.states.positions, model.states.bodies.heading]), model
 
 
 @pytest.mark.parametrize(

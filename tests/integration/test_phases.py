@@ -6,6 +6,7 @@ from contextlib import suppress
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
 import pytest
 from simpy.core import StopSimulation
 
@@ -34,7 +35,7 @@ def game(*policies: str, **fields: Any) -> Game:
 def world(model: GameModel) -> bytes:
     """Return the state of the world: bodies, actions, carried pucks, supplies."""
     positions = model.space.agent_positions.tobytes()
-    return positions + model.states.robots.tobytes() + json.dumps(model.supply).encode()
+    return positions + np.array(model.states.bodies).tobytes() + json.dumps(model.supply).encode()
 
 
 # The measured game continues the world.

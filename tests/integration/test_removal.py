@@ -157,9 +157,9 @@ def test_timeouts_of_a_removed_robot_have_no_effect() -> None:
     model = game_under_way()
     robot = model.robots[4]
     robot.remove()
-    before = robot.state, robot.heading, robot._states.robots.tobytes()
+    before = robot.state, robot.heading, [array.tolist() for array in robot._states.bodies]
     model.play()
-    assert before == (robot.state, robot.heading, robot._states.robots.tobytes())
+    assert before == (robot.state, robot.heading, [array.tolist() for array in robot._states.bodies])
 
 
 @pytest.mark.parametrize("all_at_once", [False, True])

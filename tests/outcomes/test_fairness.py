@@ -172,9 +172,9 @@ def put_twins(model: GameModel, original: GameModel, exchange: Exchange) -> None
         twin = exchange.twins(robot, model.game.size)
         states.positions[robot] = source.positions[twin] * exchange.signs
         heading = exchange.heading(source.heading[twin])
-        states.robots["heading"][robot] = heading
-        states.robots["forward_x"][robot] = math.cos(heading)
-        states.robots["forward_y"][robot] = math.sin(heading)
+        states.bodies.heading[robot] = heading
+        states.bodies.forward_x[robot] = math.cos(heading)
+        states.bodies.forward_y[robot] = math.sin(heading)
 
 
 def reverse_within_swarms(robot: int, n: int) -> int:
@@ -207,9 +207,9 @@ def play_exchanged(game: Game, seed: int, exchange: Exchange) -> float:
     path = []
     while not model.ended:
         model.step()
-        robots = model.states.robots[twins]
-        turns = -robots["turn_rate"] if exchange.is_reflection else robots["turn_rate"]
-        path.append((model.states.positions[twins] * exchange.signs, image_of[robots["opponent"]], turns))
+        bodies = model.states.bodies
+        turns = -bodies.turn_rate[twins] if exchange.is_reflection else bodies.turn_rate[twins]
+        path.append((model.states.positions[twins] * exchange.signs, image_of[bodies.opponent[twins]], turns))
     apart, tied = 0.0, False
     with pytest.MonkeyPatch.context() as monkeypatch:
         exchange_draws(image, exchange, monkeypatch)
@@ -217,11 +217,11 @@ def play_exchanged(game: Game, seed: int, exchange: Exchange) -> float:
             before = image.states.positions.copy()
             image.step()
             apart = max(apart, float(np.abs(image.states.positions - positions).max()))
-            opposite = abs(turns + image.states.robots["turn_rate"]) < 1e-12
+            opposite = abs(turns + image.states.bodies.turn_rate) < 1e-12
             for turn in turns[opposite & (turns != 0)]:
                 # A robot that drives home, flees straight back and turns home again makes a half turn.
                 tied |= apart < 1e-6 and abs(math.remainder(math.pi, turn)) < 1e-9
-            for robot in np.flatnonzero(image.states.robots["opponent"] != met):
+            for robot in np.flatnonzero(image.states.bodies.opponent != met):
                 if apart < 1e-6 and not tied:
                     opponents = (image.states.opponent[robot], met[robot])
                     distances = [math.dist(before[robot], before[k]) for k in opponents]

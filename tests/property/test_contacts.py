@@ -46,8 +46,8 @@ def assert_apart(positions: Floats, radius: float, half: float) -> None:
 @settings(deadline=None, max_examples=150)
 @given(scenes())
 def test_bodies_stay_apart_and_inside(scene: Scene) -> None:
-    scene.states.robots["phase"] = ACTION
-    scene.states.robots["carrying"] = 0
+    scene.states.bodies.phase[:] = ACTION
+    scene.states.bodies.carrying[:] = 0
     for _ in range(10):
         drive(scene)
         assert_apart(scene.states.positions, scene.game.body.radius, scene.arena.half)

@@ -76,7 +76,7 @@ def check_bodies(model: GameModel, before: np.ndarray[Any, Any]) -> None:
     if len(positions) > 1:
         assert pdist(positions).min() > 2 * body.radius - 1e-4
     assert np.abs(positions).max() <= model.arena.half - body.radius + ROUNDING
-    assert np.abs(model.states.robots["heading"]).max() <= np.pi + ROUNDING
+    assert np.abs(model.states.bodies.heading).max() <= np.pi + ROUNDING
     # Drive, shoves and relaxation; a body that moves farther could pass through others.
     drive = max(max(swarm.drive, swarm.drive_action) for swarm in model.game.swarms)
     stride = drive * body.top_speed * model.game.parameters.period
@@ -164,8 +164,8 @@ def longest_stay(model: GameModel, seconds: float, fights_count: bool) -> float:
     drives against it holds it, not a wedge.
     """
     positions, period = model.states.positions, model.game.parameters.period
-    phase, opponent = model.states.robots["phase"], model.states.robots["opponent"]
-    swarm, everyone = model.states.robots["swarm"], range(len(model.robots))
+    phase, opponent = model.states.bodies.phase, model.states.bodies.opponent
+    swarm, everyone = model.states.bodies.swarm, range(len(model.robots))
     fighter = np.array(
         [[robot.policy.choose(k).direction == TOWARDS for k in (0, 1)] for robot in model.robots]
     )

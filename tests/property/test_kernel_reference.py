@@ -31,7 +31,7 @@ def test_a_period_equals_the_reference(scene: Scene) -> None:
 def test_percepts_follow_pick_ups_in_the_same_period() -> None:
     game = make_game("avoid", size=1, duration=10)
     scene = make_scene(game, game.arena(0).stations[:1], [0.0], 0.015)
-    scene.states.robots["phase"] = IDLE
+    scene.states.bodies.phase[:] = IDLE
     kernel, calls = scene.kernel(), list[int]()
     advance = compared(kernel, ReferenceKernel(game, scene.arena), scene.states, calls)
     found = [(advance(0, until)[1], int(kernel.events["kind"][0])) for until in (0, 1, 0)]
@@ -151,7 +151,7 @@ def test_a_different_state_is_detected(field: str) -> None:
     states = RobotStates(np.zeros((2, 2)), np.zeros(2, dtype=np.int64), np.zeros(2))
     state = State.of(states)
     assert_same_state(states, state)
-    changed = states.positions if field == "positions" else states.robots[field]
+    changed = states.positions if field == "positions" else getattr(states.bodies, field)
     changed[1] += 1e-8
     with pytest.raises(AssertionError):
         assert_same_state(states, state)

@@ -23,7 +23,7 @@ def assert_permuted(scene: Scene, image: Scene, order: Integers) -> None:
     for (robot, kind), (other, *rest) in image_events.items():
         assert (order[other] if kind == CONFLICT else other, *rest) == events[order[robot], kind]
     np.testing.assert_allclose(image.states.positions, scene.states.positions[order], rtol=0, atol=1e-9)
-    assert (image.states.robots["heading"] == scene.states.robots["heading"][order]).all()
+    assert (image.states.bodies.heading == scene.states.bodies.heading[order]).all()
 
 
 @settings(deadline=None, max_examples=300)
@@ -44,7 +44,7 @@ def assert_mirrored(scene: Scene, image: Scene) -> None:
         assert (other, active, sensors) == events[key][:3]
         assert math.remainder(angle + events[key][3], 2 * math.pi) == pytest.approx(0, abs=1e-9)
     np.testing.assert_allclose(image.states.positions, scene.states.positions * (-1, 1), rtol=0, atol=1e-9)
-    turned = image.states.robots["heading"] + scene.states.robots["heading"] - math.pi
+    turned = image.states.bodies.heading + scene.states.bodies.heading - math.pi
     np.testing.assert_allclose(np.sin(turned / 2), 0, atol=1e-9)
 
 
@@ -64,7 +64,7 @@ def test_an_effect_of_the_order_is_detected() -> None:
     order = np.array((1, 0))
     assert_permuted(touching(), clone(touching(), order), order)
     favoured = clone(touching(), order)
-    favoured.states.robots["stride"][1] *= 1.001
+    favoured.states.bodies.stride[1] *= 1.001
     with pytest.raises(AssertionError):
         assert_permuted(touching(), favoured, order)
 
@@ -72,6 +72,6 @@ def test_an_effect_of_the_order_is_detected() -> None:
 def test_a_wrong_mirror_image_is_detected() -> None:
     assert_mirrored(touching(), mirrored(touching()))
     bent = mirrored(touching())
-    bent.states.robots["stride"][0] *= 1.001
+    bent.states.bodies.stride[0] *= 1.001
     with pytest.raises(AssertionError):
         assert_mirrored(touching(), bent)

@@ -53,7 +53,7 @@ class State:
     def of(cls, states: RobotStates) -> Self:
         """Copy the state arrays."""
         names = ("heading", "stride", "turn_rate", "phase", "carrying", "opponent", "swarm")
-        return cls(states.positions.copy(), *(states.robots[name].copy() for name in names))
+        return cls(states.positions.copy(), *(getattr(states.bodies, name).copy() for name in names))
 
 
 class ReferenceKernel:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from kswarms.agents.body import BODIES
 from kswarms.agents.common.arrays import Floats, Integers
 from kswarms.agents.common.limits import LONGEST_STEP
-from kswarms.agents.robot.state import ACTION, IDLE, RobotStates
+from kswarms.agents.robot.state import ACTION, IDLE, Bodies, RobotStates
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game, Swarm, apportion
 from kswarms.model.description.parameters import PRESETS
@@ -42,10 +42,10 @@ def make_scene(game: Game, positions: ArrayLike, headings: ArrayLike, stride: Ar
     """Return a scene of robots without decisions, those of S1 first."""
     sizes = [swarm.size for swarm in game.swarms]
     swarm_of = np.repeat(np.arange(len(sizes)), sizes)
-    places, directions = (np.array(each, dtype=np.float64) for each in (positions, headings))
-    states = RobotStates(places, swarm_of, directions)
-    states.robots["stride"] = stride
-    states.robots["phase"] = ACTION  # has no events
+    directions = np.full(len(swarm_of), headings, dtype=np.float64)
+    states = RobotStates(np.array(positions, dtype=np.float64), swarm_of, directions)
+    states.bodies.stride[:] = stride
+    states.bodies.phase[:] = ACTION  # has no events
     return Scene(game, game.arena(0), states)
 
 
@@ -89,12 +89,12 @@ def scenes(draw: st.DrawFn, largest: int = 60) -> Scene:
     crowding = draw(st.sampled_from((0.0, 0.5, 0.95)))
     positions = crowd(rng, n, radius, game.side / 2, crowding, gap=2 * fastest)
     scene = make_scene(game, positions, rng.uniform(-math.pi, math.pi, n), 0.0)
-    robots = scene.states.robots
-    robots["phase"] = rng.integers(IDLE, ACTION + 1, n)
-    robots["carrying"] = rng.integers(0, 2, n)
-    robots["opponent"] = rng.integers(-1, n, n)
-    robots["stride"] = rng.choice((0.0, 0.5, 1.0), n, p=(0.2, 0.1, 0.7)) * fastest
-    robots["turn_rate"] = rng.choice((0.0, -0.296, 0.5), n, p=(0.6, 0.2, 0.2))
+    bodies = scene.states.bodies
+    bodies.phase[:] = rng.integers(IDLE, ACTION + 1, n)
+    bodies.carrying[:] = rng.integers(0, 2, n)
+    bodies.opponent[:] = rng.integers(-1, n, n)
+    bodies.stride[:] = rng.choice((0.0, 0.5, 1.0), n, p=(0.2, 0.1, 0.7)) * fastest
+    bodies.turn_rate[:] = rng.choice((0.0, -0.296, 0.5), n, p=(0.6, 0.2, 0.2))
     return scene
 
 
@@ -159,22 +159,23 @@ def crowd(
 def clone(scene: Scene, order: Integers | None = None) -> Scene:
     """Copy a scene with its robots in another order: robot k of the copy is robot ``order[k]``."""
     order = np.arange(len(scene.states.positions)) if order is None else order
-    robots = scene.states.robots[order]
+    bodies = Bodies._make(array[order] for array in scene.states.bodies)
     new_number = np.append(np.argsort(order), -1)  # −1, no opponent, stays −1
-    states = RobotStates(scene.states.positions[order], robots["swarm"], robots["heading"])
-    states.robots[:] = robots
-    states.robots["opponent"] = new_number[robots["opponent"]]
+    states = RobotStates(scene.states.positions[order], bodies.swarm, bodies.heading)
+    for new, old in zip(states.bodies, bodies, strict=True):
+        new[:] = old
+    states.bodies.opponent[:] = new_number[bodies.opponent]
     return replace(scene, states=states)
 
 
 def mirrored(scene: Scene) -> Scene:
     """Mirror a scene at the y-axis."""
     image = clone(scene)
-    robots = image.states.robots
+    bodies = image.states.bodies
     image.states.positions[:, 0] *= -1
-    robots["heading"] = np.where(robots["heading"] > 0, math.pi, -math.pi) - robots["heading"]
-    robots["forward_x"] *= -1
-    robots["turn_rate"] *= -1
+    bodies.heading[:] = np.where(bodies.heading > 0, math.pi, -math.pi) - bodies.heading
+    bodies.forward_x[:] *= -1
+    bodies.turn_rate[:] *= -1
     flip = np.array((-1.0, 1.0))
     arena = replace(scene.arena, stations=scene.arena.stations * flip, bases=scene.arena.bases * flip)
     return replace(image, arena=arena)
@@ -206,5 +207,5 @@ def crowded(scene: Scene) -> Scene:
     """
     for _ in range(2):
         play_period(scene)
-    scene.states.robots["phase"] = ACTION
+    scene.states.bodies.phase[:] = ACTION
     return replace(scene, game=scene.game.replace(parameters=scene.game.parameters.replace(preempt=False)))

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from kswarms.agents.common.arrays import Rows
 from kswarms.agents.robot.sensing import SECTOR, heads_for, read_sensors, sense, wall_ray, walls_met, wrap
 
 angles = st.floats(-math.pi, math.pi)
@@ -94,6 +95,10 @@ def test_heading_for_a_wall() -> None:
     assert not any(heads_for(heading, walls) for heading, walls in away)
 
 
+def rows(n: int) -> Rows:
+    return np.arange(n, dtype=np.uint32)
+
+
 def ring(
     heading: float, *others: tuple[float, float], at: tuple[float, float] = (0.0, 0.0), limit: float = 9.0
 ) -> list[float]:
@@ -101,8 +106,8 @@ def ring(
     x, y = at
     places = [(x + d * math.cos(heading + b), y + d * math.sin(heading + b)) for b, d in others]
     positions = np.array([at, *places])
-    forward, numbers, free = (math.cos(heading), math.sin(heading)), np.arange(len(positions)), np.empty(8)
-    sense(0, *forward, positions, numbers, len(numbers), RADIUS, 2.0, limit, free)
+    forward, free = (math.cos(heading), math.sin(heading)), np.empty(8)
+    sense(0, *forward, *positions.T.copy(), rows(len(positions)), len(positions), RADIUS, 2.0, limit, free)
     return [float(distance) for distance in free]
 
 
@@ -134,7 +139,7 @@ def test_robots_beyond_the_limit_are_skipped() -> None:
 def test_only_the_given_robots_count() -> None:
     positions = np.array([[0.0, 0.0], [0.5, 0.0], [0.3, 0.0]])
     free = np.empty(8)
-    sense(0, 1.0, 0.0, positions, np.array([1, 0, 2]), 2, RADIUS, 2.0, 9.0, free)
+    sense(0, 1.0, 0.0, *positions.T.copy(), rows(3), 2, RADIUS, 2.0, 9.0, free)
     assert free[0] == pytest.approx(0.3)
 
 
@@ -147,7 +152,7 @@ def read(
 ) -> list[int]:
     forward = math.cos(heading), math.sin(heading)
     nearest, read = np.full(8, reach), np.full(8, -1)
-    read_sensors(0, met, *forward, np.array(positions), RADIUS, 1.0, nearest, read)
+    read_sensors(0, met, *forward, *np.array(positions).T.copy(), RADIUS, 1.0, nearest, read)
     return read.tolist()
 
 
@@ -180,8 +185,8 @@ def test_the_robots_read_have_the_distances_that_sensors_measure(
 ) -> None:
     forward = math.cos(heading), math.sin(heading)
     free = np.zeros(8)
-    others = np.arange(len(positions))
-    sense(0, *forward, np.array(positions), others, len(positions), RADIUS, 1.0, 0.3, free)
+    columns = np.array(positions).T.copy()
+    sense(0, *forward, *columns, rows(len(positions)), len(positions), RADIUS, 1.0, 0.3, free)
     met = min(range(1, len(positions)), key=lambda other: math.dist(positions[0], positions[other]))
     seen = read(positions, met, heading)
     gaps = {other: math.dist(positions[0], positions[other]) - 2 * RADIUS for other in seen if other >= 0}
