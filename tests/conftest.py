@@ -57,9 +57,9 @@ def scene() -> Scene:
         model = GameModel(game, seed=seed, record=record)
         for robot, (x, y, heading) in zip(model.robots, [p for poses in swarms for p in poses], strict=True):
             model.states.positions[robot.index] = x, y
-            bodies = model.states.bodies
-            bodies.heading[robot.index] = heading
-            bodies.forward_x[robot.index], bodies.forward_y[robot.index] = math.cos(heading), math.sin(heading)
+            row, bodies = robot.index, model.states.bodies
+            bodies.heading[row] = heading
+            bodies.forward_x[row], bodies.forward_y[row] = math.cos(heading), math.sin(heading)
         return model
 
     return build
