@@ -13,7 +13,7 @@ GAMES := tests/outcomes tests/baseline
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:  # two installations into one environment would collide
-.PHONY: help demo explore test lint types docs bench full clean
+.PHONY: help demo explore test lint types docs bench profile full clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-7s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -48,6 +48,9 @@ docs: $(TEST)  ## build the documentation into site/ and execute its notebooks
 bench: $(RUN)  ## measure speed, memory and start-up
 	$(BIN)/python -m benchmarks.bench
 	$(BIN)/python -m benchmarks.report
+
+profile: $(RUN)  ## measure where the time of a game goes
+	$(BIN)/python -m benchmarks.profile
 
 full: $(TEST)  ## run all tests with the full numbers of seeds (long)
 	$(BIN)/python -m pytest -n auto --dist loadfile -m "full or not full" -o faulthandler_timeout=0

@@ -3,12 +3,14 @@
 import subprocess
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
+import numba
+import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from benchmarks import bench, games
+from benchmarks import bench, games, profile
 from benchmarks import report as report_benchmark
 from benchmarks.games import Plan, WorkError, count_work, time_game
 from kswarms.agents.common.columns import column_names
@@ -53,6 +55,72 @@ def test_the_bare_loop_processes_the_given_number_of_timeouts(monkeypatch: pytes
     monkeypatch.setattr(games.simpy.Environment, "timeout", lambda env, t: made.append(t) or timeout(env, t))
     assert games.time_bare_loop(6, 100) > 0
     assert len(made) == 100
+
+
+def test_phases_are_those_of_the_call_stack() -> None:
+    game = [("kswarms.model.game_model", "_decide"), ("kswarms.model.game_model", "_move"), ("m", "play")]
+    simpy = [("simpy.core", "step"), ("simpy.core", "run"), ("m", "play")]
+    krembot = "kswarms.agents.robot.krembot"
+    assert [
+        profile.phase_of(stack)
+        for stack in (
+            [("kswarms.agents.policies.spec", "parse"), ("m", "model")],
+            simpy,
+            [("simpy.events", "__init__"), (krembot, "meet"), *game],
+            [("kswarms.agents.learning.bandit", "choose"), (krembot, "meet"), *game],
+            game,
+            [(krembot, "_set"), (krembot, "begin_leg"), *game],
+            [(krembot, "_set"), (krembot, "_leg_over"), *simpy],
+            game[1:],
+        )
+    ] == [
+        "set-up",
+        "SimPy: loop",
+        "SimPy: scheduling of timeouts",
+        "learning and policies",
+        "decision: dispatch",
+        "decision: begin_leg",
+        "timeout: leg_over",
+        "kernel",
+    ]
+
+
+def test_samples_are_taken_while_a_game_is_played() -> None:
+    *rows, total = profile.phases(TINY, [0, 1], 0.1)
+    assert total[0] == "sum"
+    assert sum(float(share) for *_, share in rows) == pytest.approx(100.0, abs=1.0)
+
+
+class Box(NamedTuple):
+    """A tuple of arrays."""
+
+    values: np.ndarray
+
+
+@numba.njit(_nrt=False)
+def add(box: Box, k: int) -> None:
+    for i in range(len(box.values)):
+        box.values[i] += k
+
+
+@numba.njit(_nrt=False)
+def double(x: float) -> float:
+    return 2.0 * x
+
+
+@numba.njit(_nrt=False)
+def add_twice(box: Box) -> float:
+    add(box, 1)
+    add(box, 2)
+    return double(box.values[0])
+
+
+def test_cycles_of_functions_that_take_arrays_are_counted() -> None:
+    counter = profile.CycleCounter(add_twice, {Box})
+    box = Box(np.zeros(100))
+    assert counter.function(box) == 6.0
+    assert [name.rpartition(".")[2] for name in counter.names] == ["add"]
+    assert (counter.calls[0], counter.cycles[0] > 0) == (2, True)
 
 
 def test_main_prints_all_tables(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
