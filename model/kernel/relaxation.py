@@ -16,8 +16,8 @@ from kswarms.model.kernel.neighbours import list_close
 TOLERANCE: Final = 0.9e-4
 """Overlap at which the relaxation stops (m); the specification allows 0.1 mm."""
 
-_CLOSE: Final = 0.1
-"""Gap of a close pair, in radii."""
+CLOSE: Final = 2.1
+"""Distance of a close pair, in radii, centre to centre."""
 _PLAIN_PASSES: Final = 3
 """Passes without momentum, which suffice except in jams."""
 _MAX_MOMENTUM: Final = 0.8
@@ -26,7 +26,7 @@ _HALF_MOMENTUM: Final = 6
 """Passes with momentum after which that fraction is a half."""
 _PASSES: Final = 200
 """Passes between two searches for close pairs."""
-_MAX_PASSES: Final = 40_000
+MAX_PASSES: Final = 40_000
 """Maximum number of passes. In a crowd that shoves, some hundred short searches precede the last one."""
 _STUCK: Final = 1000
 """Passes after which the relaxation assumes a straight row between walls, which passes cannot separate."""
@@ -63,34 +63,51 @@ def relax(x: Floats, y: Floats, radius: float, half: float, work: Work, pairs: P
     int
         Number of passes, −1 if it did not converge.
     """
-    move_x, move_y, shove_x, shove_y = work.move_x, work.move_y, work.shove_x, work.shove_y
-    count, limit = work.touches, half - radius
+    limit = half - radius
     for i in range(len(x)):
         x[i] = min(limit, max(-limit, x[i]))
         y[i] = min(limit, max(-limit, y[i]))
     done = 0
-    while done < _MAX_PASSES:
-        n_close = list_close(x, y, pairs, n_pairs, (2.0 + _CLOSE) * radius)
-        for i in range(len(x)):
-            move_x[i] = 0.0
-            move_y[i] = 0.0
-            shove_x[i] = 0.0
-            shove_y[i] = 0.0
-            count[i] = 0
-        if _measure_overlaps(x, y, radius, work, pairs, n_close) <= TOLERANCE:
+    while done < MAX_PASSES:
+        n_close = list_close(x, y, pairs, n_pairs, CLOSE * radius)
+        before = done
+        done = relax_close(x, y, radius, limit, work, pairs, n_close, before)
+        if done == before:
             return done
-        n_queued = _queue_bodies(work, pairs, n_close)
-        if done >= _STUCK:
-            _bend(x, y, radius, work, pairs, n_close)
-        for k in range(_PASSES):
-            if done % _FORGET_EVERY == _FORGET_AFTER:
-                n_close = _forget_resting(x, y, radius, work, pairs, n_close)
-                n_queued = _queue_bodies(work, pairs, n_close)
-            if k > 0 and _measure_overlaps(x, y, radius, work, pairs, n_close) <= TOLERANCE:
-                break
-            _move_bodies(x, y, limit, work, n_queued, _momentum(done))
-            done += 1
     return -1
+
+
+@compiled
+def relax_close(
+    x: Floats, y: Floats, radius: float, limit: float, work: Work, pairs: Pairs, n_close: int, done: int
+) -> int:
+    """Separate the close pairs in up to `_PASSES` passes, within ± `limit` (m).
+
+    `done` passes were done before. Return `done` plus the number of passes, which is 0 if no pair overlaps.
+    Other pairs may come close in these passes.
+    """
+    move_x, move_y, shove_x, shove_y = work.move_x, work.move_y, work.shove_x, work.shove_y
+    count = work.touches
+    for i in range(len(x)):
+        move_x[i] = 0.0
+        move_y[i] = 0.0
+        shove_x[i] = 0.0
+        shove_y[i] = 0.0
+        count[i] = 0
+    if _measure_overlaps(x, y, radius, work, pairs, n_close) <= TOLERANCE:
+        return done
+    n_queued = _queue_bodies(work, pairs, n_close)
+    if done >= _STUCK:
+        _bend(x, y, radius, work, pairs, n_close)
+    for k in range(_PASSES):
+        if done % _FORGET_EVERY == _FORGET_AFTER:
+            n_close = _forget_resting(x, y, radius, work, pairs, n_close)
+            n_queued = _queue_bodies(work, pairs, n_close)
+        if k > 0 and _measure_overlaps(x, y, radius, work, pairs, n_close) <= TOLERANCE:
+            break
+        _move_bodies(x, y, limit, work, n_queued, _momentum(done))
+        done += 1
+    return done
 
 
 @compiled

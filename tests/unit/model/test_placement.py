@@ -6,9 +6,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial import cKDTree
 from scipy.spatial.distance import pdist
 
+from kswarms.agents.common.arrays import Floats
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.streams import Purpose, stream
+from kswarms.model.kernel.arrays import make_pairs, make_work
+from kswarms.model.kernel.draws import draw, seed_streams
+from kswarms.model.kernel.relaxation import TOLERANCE, relax
 from kswarms.model.placement import start_poses
 
 RADIUS, CLEARANCE, WALL_CLEARANCE = 0.085, 0.01, 0.005
@@ -62,3 +68,52 @@ def test_overlaps_in_a_crowd_are_relaxed(seed: int) -> None:
     positions, _ = start_poses(80, seed, 1.0, RADIUS, CLEARANCE, WALL_CLEARANCE)
     assert pdist(positions).min() >= 2 * RADIUS + CLEARANCE
     assert np.abs(positions).max() <= 1.0 - RADIUS - WALL_CLEARANCE + 1e-12
+
+
+def place_one_by_one(n: int, seed: int, half: float) -> Floats:
+    """Return the places of `start_poses`, found by comparing all robots with each other."""
+    limit, gap = half - RADIUS - WALL_CLEARANCE, 2 * RADIUS + CLEARANCE
+    places, crowded = np.empty((0, 2)), False
+    for robot in range(n):
+        drawn = stream(seed, robot, Purpose.POSITION).uniform(-limit, limit, size=(8464, 2))
+        for first in (50, 8464):
+            room = ((drawn[:first, None] - places) ** 2).sum(axis=2).min(axis=1, initial=np.inf)
+            free = np.flatnonzero(room >= gap**2)
+            if len(free):
+                break
+        crowded |= not len(free)
+        place = drawn[free[0]] if len(free) else drawn[-4096:][room[-4096:].argmax()]
+        places = np.vstack([places, place])
+    if crowded:
+        pairs = make_pairs(n * (n - 1) // 2)
+        pairs.first[:], pairs.second[:] = np.triu_indices(n, 1)
+        x, y, reach = places[:, 0].copy(), places[:, 1].copy(), gap / 2 + TOLERANCE
+        relax(x, y, reach, limit + reach, make_work(n), pairs, len(pairs.first))
+        places = np.column_stack((x, y))
+    return places
+
+
+@pytest.mark.parametrize(("n", "half"), [(40, 20.0), (60, 1.0), (75, 1.0), (85, 1.0)])
+def test_places_are_those_of_a_search_among_all_robots(n: int, half: float) -> None:
+    positions, headings = start_poses(n, n, half, RADIUS, CLEARANCE, WALL_CLEARANCE)
+    assert (positions == place_one_by_one(n, n, half)).all()
+    drawn = [stream(n, robot, Purpose.HEADING).uniform(-math.pi, math.pi) for robot in range(n)]
+    assert headings.tolist() == drawn
+
+
+@given(st.one_of(st.integers(0, 2**70), st.integers(0, 2**200)), st.sampled_from(Purpose))
+def test_draws_of_many_streams_equal_those_of_each_stream(seed: int, purpose: Purpose) -> None:
+    with np.errstate(over="ignore"):
+        streams = seed_streams(seed, 3, purpose)
+        draws = [[draw(streams, robot) for _ in range(4)] for robot in range(3)]
+    assert draws == [stream(seed, robot, purpose).random(4).tolist() for robot in range(3)]
+
+
+def test_places_of_many_robots_do_not_overlap() -> None:
+    positions, _ = start_poses(20_000, 1, 20.0, RADIUS, CLEARANCE, WALL_CLEARANCE)
+    assert not cKDTree(positions).query_pairs(2 * RADIUS + CLEARANCE - 1e-12)
+
+
+def test_a_large_crowd_is_relaxed() -> None:
+    positions, _ = start_poses(5000, 1, 7.1, RADIUS, CLEARANCE, WALL_CLEARANCE)
+    assert not cKDTree(positions).query_pairs(2 * RADIUS + CLEARANCE - 1e-12)
