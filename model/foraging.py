@@ -11,7 +11,7 @@ from kswarms.agents.policies.spec import PolicyLike
 from kswarms.agents.user_code.syntax import split_outside
 from kswarms.model.description.game import Game, Swarm, apportion
 from kswarms.model.game_model import GameModel
-from kswarms.model.mesa_base import Rng
+from kswarms.model.mesa_base import Rng, hide_seed
 
 
 class ForagingModel(GameModel):
@@ -31,7 +31,7 @@ class ForagingModel(GameModel):
         sets the drive in state A. Defaults if empty.
     seed, record, rng
         As in `kswarms.model.game_model.GameModel`.
-    **fields
+    **kwargs
         Further fields of `kswarms.model.description.game.Game`, such as ``duration`` or ``layout``.
 
     Raises
@@ -40,6 +40,7 @@ class ForagingModel(GameModel):
         If a value is not allowed.
     """
 
+    @hide_seed
     def __init__(
         self,
         /,  # so that a field named self is reported as unknown
@@ -50,14 +51,14 @@ class ForagingModel(GameModel):
         seed: float | str | None = None,
         record: str = "model",
         rng: Rng | None = None,
-        **fields: Any,
+        **kwargs: Any,
     ) -> None:
         for name, text in (("shares", shares), ("drives", drives), ("record", record)):
             if not isinstance(text, str):
                 raise InputError(name, text, "must be a text")
-        if "swarms" in fields:
-            raise InputError("swarms", fields["swarms"], "unknown field; use n, policies, shares and drives")
-        super().__init__(Game(swarms=_swarms(n, policies, shares, drives), **fields), seed, record, rng)
+        if "swarms" in kwargs:
+            raise InputError("swarms", kwargs["swarms"], "unknown field; use n, policies, shares and drives")
+        super().__init__(Game(swarms=_swarms(n, policies, shares, drives), **kwargs), seed, record, rng)
 
 
 def _swarms(n: int, policies: str | Sequence[PolicyLike], shares: str, drives: str) -> tuple[Swarm, ...]:

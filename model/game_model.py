@@ -13,13 +13,14 @@ from typing import Any
 from simpy.core import StopSimulation
 from simpy.events import Event
 
+from kswarms.agents.common.errors import InputError
 from kswarms.agents.robot.krembot import Krembot
 from kswarms.model.clock import AFTER_TIMEOUTS, BEFORE_TIMEOUTS, Instant
 from kswarms.model.description.game import Game
 from kswarms.model.game_state import GameState
 from kswarms.model.kernel.arrays import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE
 from kswarms.model.kernel.kernel import Kernel
-from kswarms.model.mesa_base import Rng
+from kswarms.model.mesa_base import Rng, hide_seed
 from kswarms.model.recorder import Recorder, Table, parse_record, policy_rows, result_rows
 
 
@@ -50,6 +51,7 @@ class GameModel(GameState):
         If a parameter is not allowed, or there is no room for the robots.
     """
 
+    @hide_seed
     def __init__(
         self, game: Game, seed: float | str | None = None, record: str = "", rng: Rng | None = None
     ) -> None:
@@ -84,7 +86,7 @@ class GameModel(GameState):
         """Play one sampling period, or to the end of the game, which stops the model."""
         if self.ended:  # the user ran the clock
             return
-        until = self.now - self.now % self._sample_every + self._sample_every
+        until = self._next_sample()
         self.env.run(until=until)
         self._check_clock(until)
 
@@ -100,6 +102,27 @@ class GameModel(GameState):
         while self.running:
             self.step()
 
+    def run_until(self, end_time: float) -> None:
+        """Play to a time (s), or to the end of the game if it is earlier, as models of Mesa 3.5 do.
+
+        Raises
+        ------
+        InputError
+            If the time is not a finite number, or in the past.
+        """
+        if not self.time <= end_time < math.inf:
+            raise InputError("end_time", end_time, f"must be a time (s) from {self.time:g} on")
+        while self.running and not self.ended and self.controller.seconds(self._next_sample()) <= end_time:
+            self.step()
+        if self.running and not self.ended and self.time < end_time:
+            end = self.controller.periods(end_time)
+            self.env.run(until=end)
+            self._check_clock(end)
+
+    def run_for(self, duration: float) -> None:
+        """Play for a duration (s), as `run_until` does."""
+        self.run_until(self.time + duration)
+
     def _wrapped_step(self, *arguments: Any, **named: Any) -> None:
         """Sample after each step, which a subclass may define; Mesa calls this as `step`."""
         if self._sampled_end:
@@ -109,9 +132,11 @@ class GameModel(GameState):
         self.steps = len(samples) - 1
         if self.steps == self.now == 0:
             self._sample()  # again: a subclass may have added reporters
-        super()._wrapped_step(*arguments, **named)
+        self.steps += 1
+        self._user_step(*arguments, **named)
         if self.ended:
             self.running = False
+        self.publish_time(self.time)
         self._sample()
         if not self.running:
             self.steps = len(samples)  # `mesa.batch_run` reads the row before this number
@@ -127,6 +152,10 @@ class GameModel(GameState):
     def tables(self) -> dict[str, Table]:
         """Return the recorded tables (conflicts, robots, trajectory) by name; columns have equal lengths."""
         return self.recorder.tables()
+
+    def _next_sample(self) -> int:
+        """Return the control period of the next sample, if the game does not end before."""
+        return self.now - self.now % self._sample_every + self._sample_every
 
     def _sample(self) -> None:
         self._sampled_end = bool(self.ended)

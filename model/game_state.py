@@ -1,6 +1,5 @@
 """State of a game: clock, robots and scores. `GameModel` adds the events."""
 
-import itertools
 import math
 from collections.abc import Collection, Mapping
 from typing import cast
@@ -72,7 +71,6 @@ class GameState(MesaModel):
         self._robot_space, self.states = place_robots(game, self.arena, self.seed, self.random)
         self.space: ContinuousSpace = self._robot_space
         self._is_complete = False
-        self._unique_ids = itertools.count(1)
         self._set_robots(make_robots(self, game, self.seed))
         self._is_complete = True
         self._swarm_of = [robot.swarm for robot in self.robots]
@@ -87,6 +85,11 @@ class GameState(MesaModel):
     def time(self) -> float:
         """Seconds since the start, learning included."""
         return self.controller.seconds(self.now)
+
+    @time.setter
+    def time(self, _: float) -> None:
+        if hasattr(self, "env"):  # `mesa.Model.__init__` of Mesa 3.5 sets it before there is a clock
+            raise AttributeError("the time is that of the clock, model.env, and cannot be set")
 
     @property
     def duration(self) -> float:
@@ -125,15 +128,9 @@ class GameState(MesaModel):
             raise InputError("robot", robot, "must be a robot in this game")
         self._take_out([robot])
 
-    def register_agent(self, agent: mesa.Agent) -> None:
-        """Register an agent that is not a robot; Mesa calls this when the agent is created."""
-        # Mesa counts the agents of each model in a dictionary of the class, which would keep all models.
-        mesa.Agent._ids.pop(self, None)
+    def _check_agent(self, agent: mesa.Agent) -> None:
         if isinstance(agent, Krembot) and (self._is_complete or agent.model is not self):
             raise InputError("agent", agent, "must not be a robot: the game has all robots from the start")
-        if agent not in self._agents:
-            agent.unique_id = next(self._unique_ids)
-        super().register_agent(agent)  # type: ignore[no-untyped-call]
 
     def deregister_agent(self, agent: mesa.Agent) -> None:
         """Deregister an agent; a robot is removed from the game."""

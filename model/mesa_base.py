@@ -1,10 +1,14 @@
 """Mesa's classes, adapted so that what they offer in public works on a game or is refused."""
 
+import inspect
+import itertools
 import random
-from typing import Any, Final, NoReturn
+from collections.abc import Callable, Sequence
+from typing import Any, Final, NoReturn, TypeVar
 
 import mesa
 import numpy as np
+from mesa import DataCollector
 from mesa.agent import AgentSet
 from mesa.experimental.continuous_space import ContinuousSpace
 from mesa.model import RNGLike, SeedLike
@@ -18,6 +22,31 @@ Rng = RNGLike | SeedLike
 
 _MAX_DIGITS: Final = 1000
 """Maximum length of a seed as text."""
+_TIME: Final = vars(mesa.Model).get("time")
+"""The observable `time` of Mesa 3.5; None before."""
+
+_Init = TypeVar("_Init", bound=Callable[..., None])
+
+
+def hide_seed(init: _Init) -> _Init:
+    """Hide the argument `seed` of a model's ``__init__`` from `inspect.signature`.
+
+    `mesa.batch_run` of Mesa 3.5 overwrites the argument `seed`, even if the sweep has values for it. Without
+    `seed` in the signature it sets `rng`, and leaves the values of `seed`.
+    """
+    signature = inspect.signature(init)
+    shown = [parameter for name, parameter in signature.parameters.items() if name != "seed"]
+    init.__signature__ = signature.replace(parameters=shown)  # type: ignore[attr-defined]
+    return init
+
+
+def label_samples(collector: DataCollector, times: Sequence[float]) -> None:
+    """Set the times (s) of all rows of a collector. Mesa 3.5 needs them for `mesa.batch_run`.
+
+    Mesa itself adds a time for each call of `collect`, but none if there are agent reporters only.
+    """
+    if hasattr(collector, "_collection_steps"):
+        collector._collection_steps[:] = times
 
 
 def seed_of_run(seed: float | str | None, rng: Rng | None) -> int:
@@ -95,11 +124,27 @@ class MesaModel(mesa.Model):
         Seed of the run.
     """
 
+    scenario = property(lambda _: None, lambda _, scenario: None)
+    """None. Mesa 3.5 has experimental scenarios; its page passes one to each new model that has one."""
+
     def __init__(self, seed: float | str | None, rng: Rng | None) -> None:
         self.seed = seed_of_run(seed, rng)
-        super().__init__(seed=self.seed)
+        self._unique_ids = itertools.count(1)
+        super().__init__(rng=self.seed)
+        self.publish_time(0.0)
+        self._seed = self.seed  # Mesa 3.3 forgets it, and `reset_randomizer` needs it
         if isinstance(rng, np.random.Generator):
             self.rng = rng
+
+    def publish_time(self, time: float) -> None:
+        """Notify the observers of `time`, which Mesa 3.5 has."""
+        if _TIME is not None:
+            _TIME.__set__(self, time)
+
+    def _refuse(self, *_: object, **__: object) -> NoReturn:
+        raise TypeError("a game has one clock, model.env of SimPy: schedule events there")
+
+    schedule_event = schedule_recurring = _refuse
 
     @property  # type: ignore[misc]  # Mesa has a setter, which only refuses
     def agents(self) -> AgentSet:
@@ -110,6 +155,18 @@ class MesaModel(mesa.Model):
     def agents_by_type(self) -> dict[type[mesa.Agent], AgentSet]:
         """The agents by their class, copies."""
         return {kind: RobotSet(agents, self.random) for kind, agents in self._agents_by_type.items()}
+
+    def register_agent(self, agent: mesa.Agent) -> None:
+        """Register an agent; Mesa calls this when the agent is created."""
+        # Mesa 3.3 counts the agents of each model in a dictionary of the class, which would keep all models.
+        getattr(mesa.Agent, "_ids", {}).pop(self, None)
+        self._check_agent(agent)
+        if agent not in self._all_agents:
+            super().register_agent(agent)  # type: ignore[no-untyped-call]
+            agent.unique_id = next(self._unique_ids)
+
+    def _check_agent(self, agent: mesa.Agent) -> None:
+        """Raise an `InputError` if an agent must not be registered."""
 
     def __reduce_ex__(self, _: object) -> NoReturn:
         raise TypeError("a game cannot be copied or pickled; play it again from model.game and model.seed")

@@ -17,6 +17,7 @@ from kswarms.agents.robot.krembot import Krembot
 from kswarms.agents.theory.swarms import swarm_utility_difference
 from kswarms.agents.theory.times import share_of_time
 from kswarms.model.game_state import GameState
+from kswarms.model.mesa_base import label_samples
 
 RECORDS: Final = ("model", "agents", *RECORDED_TABLES)
 """Samples of the model and of the agents; tables of conflicts, robots and positions."""
@@ -112,6 +113,7 @@ class Recorder:
             self._trajectory.append(rows)
         _make_room(collector, step)
         collector.collect(state)
+        label_samples(collector, self.sample_times)
 
     def flush_conflicts(self) -> None:
         """Move the closed conflicts to the table: times in seconds, swarms counted from 1.

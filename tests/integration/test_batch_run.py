@@ -11,6 +11,7 @@ import mesa
 import pytest
 
 from kswarms.model.foraging import ForagingModel
+from tests.helpers.mesa_versions import HAS_RNG, sample_labels
 
 SCRIPT = """
 import json
@@ -66,7 +67,8 @@ def test_two_processes_give_the_rows_of_one(tmp_path: Path) -> None:
     assert one == two
     assert len({row["RunId"] for row in one}) == 16
     steps = [(row["Step"], row["time"]) for row in one if row["RunId"] == 0]
-    assert steps == [(0, 0.0), (1, 10.0), (2, 20.0), (3, 30.0), (4, 40.0), (5, 47.0)]
+    times = [0.0, 10.0, 20.0, 30.0, 40.0, 47.0]
+    assert steps == list(zip(sample_labels(times), times, strict=True))
     # All samples of each run are there, with the one at its end.
     ends = {row["RunId"]: row for row in one}
     for row in ends.values():
@@ -102,7 +104,19 @@ def test_agents_have_rows() -> None:
         data_collection_period=1,
         display_progress=False,
     )
-    assert [(row["Step"], row["AgentID"]) for row in rows] == [(s, a) for s in range(3) for a in (1, 2, 3, 4)]
+    labels = sample_labels([0.0, 10.0, 20.0])
+    assert [(row["Step"], row["AgentID"]) for row in rows] == [(s, a) for s in labels for a in (1, 2, 3, 4)]
     assert [row["swarm"] for row in rows[:4]] == [1, 1, 2, 2]
     assert all({"state", "puck", "x", "y", "heading"} <= row.keys() for row in rows)
     assert rows[0]["x"] != rows[-4]["x"]
+
+
+@pytest.mark.skipif(not HAS_RNG, reason="Mesa 3.5 and later")
+def test_seeds_may_be_given_as_rng() -> None:
+    given = {"n": 4, "duration": 20.0, "policies": ["avoid,avoid", "avoid,attack"]}
+    options: Row = {"number_processes": 1, "data_collection_period": -1, "display_progress": False}
+    rows = mesa.batch_run(ForagingModel, given, rng=[3, 4], **options)
+    assert [(row["rng"], row["run_seed"]) for row in rows] == [(3, 3), (3, 3), (4, 4), (4, 4)]
+    same = mesa.batch_run(ForagingModel, given | {"seed": [3, 4]}, **options)
+    times = [sorted((row["policies"], row["run_seed"], row["t_p_1"]) for row in each) for each in (rows, same)]
+    assert times[0] == times[1]

@@ -13,6 +13,7 @@ from kswarms.model.description.parameters import PRESETS
 from kswarms.model.foraging import ForagingModel
 from kswarms.model.game_model import GameModel
 from kswarms.model.recorder import RECORDS
+from tests.helpers.mesa_versions import sample_labels
 
 GAME = Game(
     swarms=(Swarm(policy="avoid", size=4), Swarm(policy="attack", size=5), Swarm(policy="mixed", size=3)),
@@ -111,7 +112,7 @@ def test_the_samples_of_the_agents() -> None:
     assert len(frame) == 13 * 12
     assert set(frame["state"]) == {"A", "P"}
     assert set(frame["puck"]) == {True, False}
-    last = frame.loc[12]
+    last = frame.loc[sample_labels(model.sample_times)[12]]
     for robot in model.robots:
         row = last.loc[robot.unique_id]
         assert (row["x"], row["y"]) == tuple(robot.position)
