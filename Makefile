@@ -13,7 +13,7 @@ GAMES := tests/outcomes tests/baseline
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:  # two installations into one environment would collide
-.PHONY: help demo explore test lint types docs bench profile full clean
+.PHONY: help demo explore test lint types versions docs bench profile full clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-7s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -42,6 +42,9 @@ lint: $(TEST)  ## check style (ruff) and the direction of imports (import-linter
 types: $(TEST)  ## check types (mypy, strict)
 	$(BIN)/mypy
 
+versions:  ## run the tests with each Python from 3.11 on that is found, and with the lowest versions of all libraries
+	@$(PYTHON) .ci/versions.py $(SHORT)
+
 docs: $(TEST)  ## build the documentation into site/ and execute its notebooks
 	NO_MKDOCS_2_WARNING=true $(BIN)/mkdocs build
 
@@ -56,7 +59,7 @@ full: $(TEST)  ## run all tests with the full numbers of seeds (long)
 	$(BIN)/python -m pytest -n auto --dist loadfile -m "full or not full" -o faulthandler_timeout=0
 
 clean:  ## remove the environment and all caches; keep results/
-	rm -rf $(VENV) build dist site .pytest_cache .hypothesis .mypy_cache .ruff_cache .coverage .coverage.* htmlcov
+	rm -rf $(VENV) .versions build dist site .pytest_cache .hypothesis .mypy_cache .ruff_cache .coverage .coverage.* htmlcov
 	find agents model scenarios analysis tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # One environment, three stamps: `demo` installs the libraries, `explore` adds the page, `test` adds the tools. A

@@ -1,11 +1,16 @@
-"""Print the lowest versions that pyproject.toml allows for kswarms and its extra `all`, as constraints for pip."""
+"""The lowest versions that pyproject.toml allows."""
 
 import re
 import tomllib
 from pathlib import Path
 
-project = tomllib.loads(Path(__file__).parents[1].joinpath("pyproject.toml").read_text(encoding="utf-8"))["project"]
-extras = project["optional-dependencies"]
-for requirement in [*project["dependencies"], *extras["cluster"], *extras["explore"]]:
-    if lower := re.match(r"([\w-]+)(?:\[\w+\])?>=([\d.]+)", requirement):
-        print(f"{lower[1]}=={lower[2]}")
+
+def pins(root: Path) -> list[str]:
+    """Return the lowest versions of the libraries of kswarms and its extra `all`, as constraints for pip."""
+    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = project["optional-dependencies"]
+    found = (
+        re.match(r"([\w-]+)(?:\[\w+\])?>=([\d.]+)", requirement)
+        for requirement in [*project["dependencies"], *extras["cluster"], *extras["explore"]]
+    )
+    return [f"{lower[1]}=={lower[2]}" for lower in found if lower]

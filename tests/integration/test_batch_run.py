@@ -118,5 +118,7 @@ def test_seeds_may_be_given_as_rng() -> None:
     rows = mesa.batch_run(ForagingModel, given, rng=[3, 4], **options)
     assert [(row["rng"], row["run_seed"]) for row in rows] == [(3, 3), (3, 3), (4, 4), (4, 4)]
     same = mesa.batch_run(ForagingModel, given | {"seed": [3, 4]}, **options)
-    times = [sorted((row["policies"], row["run_seed"], row["t_p_1"]) for row in each) for each in (rows, same)]
-    assert times[0] == times[1]
+    key = ("policies", "run_seed", "t_p_1")
+    assert {tuple(row[name] for name in key) for row in same} == {
+        tuple(row[name] for name in key) for row in rows
+    }

@@ -4,6 +4,9 @@ import importlib.util
 from pathlib import Path
 
 import pytest
+
+pytest.importorskip("mkdocs", reason="needs the extra `docs`")
+
 from mkdocs.exceptions import PluginError
 
 from kswarms.agents.common.columns import TABLES

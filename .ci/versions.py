@@ -1,0 +1,88 @@
+"""Run the tests with several versions of Python and of the libraries, each in an environment in `.versions`.
+
+The environments: each Python that is found, with the newest libraries; and the Python that runs this script,
+with the lowest versions that pyproject.toml allows. `--short` runs a part of the tests, and skips this Python
+with the newest libraries.
+"""
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import lowest_versions
+
+ROOT = Path(__file__).parents[1]
+PYTHONS = ("3.11", "3.12", "3.13", "3.14")
+THIS = f"{sys.version_info.major}.{sys.version_info.minor}"
+SHORT = [
+    "tests/unit", "tests/baseline", "tests/integration/test_batch_run.py",
+    "tests/integration/test_batch_run_subclasses.py", "tests/integration/test_determinism.py",
+    "tests/integration/test_mesa_interface.py", "tests/integration/test_mesa_versions.py",
+]  # fmt: skip
+REPORT = """
+import sys
+from importlib.metadata import version
+names = "mesa", "numpy", "numba", "pandas", "pyarrow"
+print(f"Python {sys.version.split()[0]}", *(f"{name} {version(name)}" for name in names), sep=", ")
+"""
+
+
+def find_python(version: str) -> str | None:
+    """Return the path of a Python of a version: this one, one on the path, or one of pyenv."""
+    pyenv = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
+    of_pyenv = sorted(pyenv.glob(f"versions/{version}.*/bin/python"))
+    found = [shutil.which(f"python{version}"), *map(str, reversed(of_pyenv))]
+    for path in [sys.executable] * (version == THIS) + [path for path in found if path]:
+        code = f"import sys, venv, sqlite3, ssl; sys.exit('{version}' != '%d.%d' % sys.version_info[:2])"
+        if subprocess.run([path, "-c", code], capture_output=True, check=False).returncode == 0:
+            return path
+    return None
+
+
+def check(name: str, python: str, options: list[str], tests: list[str]) -> bool:
+    """Install kswarms into an environment, with options of pip, and run tests; return whether they pass."""
+    started = time.monotonic()
+    environment = ROOT / ".versions" / name
+    own = environment / "bin" / "python"
+    quiet = ["--quiet", "--disable-pip-version-check", "--no-input"]
+    commands = [
+        [python, "-m", "venv", "--clear", environment],
+        [own, "-m", "pip", "install", *quiet, *options, "-e", ".[pytest]"],
+        [own, "-c", REPORT],
+        [own, "-m", "pytest", "-q", "-n", "auto", "--dist", "loadfile", "-p", "no:cacheprovider", *tests],
+    ]
+    passed = all(subprocess.run(command, cwd=ROOT, check=False).returncode == 0 for command in commands)
+    print(f"{name}: {'passed' if passed else 'FAILED'} in {time.monotonic() - started:.0f} s", flush=True)
+    return passed
+
+
+def main() -> int:
+    """Check all environments; return the exit status."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--short", action="store_true", help="run a part of the tests")
+    short = parser.parse_args().short
+    tests = [*SHORT, "-m", "not slow and not full"] if short else ["tests"]
+    failed = []
+    for version in PYTHONS:
+        name = f"python-{version}"
+        if short and version == THIS:
+            print(f"{name}: skipped, `make test` runs all tests with it", flush=True)
+        elif (python := find_python(version)) is None:
+            print(f"{name}: skipped, there is no Python {version}", flush=True)
+        elif not check(name, python, ["--upgrade", "--upgrade-strategy", "eager"], tests):
+            failed.append(name)
+    constraints = ROOT / ".versions" / "lowest.txt"
+    constraints.parent.mkdir(exist_ok=True)
+    constraints.write_text("".join(f"{line}\n" for line in lowest_versions.pins(ROOT)), encoding="utf-8")
+    # Old libraries warn of newer ones, of which kswarms itself knows nothing.
+    if not check("lowest", sys.executable, ["-c", str(constraints)], [*tests, "-W", "default"]):
+        failed.append("lowest")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
