@@ -1,6 +1,5 @@
 """Atomic file writing, and checks of outputs before the work that fills them."""
 
-import fcntl
 import os
 import re
 import secrets
@@ -12,6 +11,11 @@ from tempfile import TemporaryFile
 from typing import Final
 
 from kswarms.agents.common.errors import InputError
+
+try:
+    import fcntl
+except ImportError:  # a system without these locks
+    fcntl = None  # type: ignore[assignment]
 
 TEMPORARY: Final = ".unfinished-"  # prefix of the names of temporary files
 _TEMPORARY_NAME: Final = re.compile(re.escape(TEMPORARY) + r"[0-9a-f]{16}(\..*)?", re.DOTALL)
@@ -108,7 +112,7 @@ def remove_temporary_files(directory: Path) -> None:
         with suppress(OSError):  # in use, a directory, a symbolic link, or not ours
             descriptor = os.open(temporary, os.O_RDWR | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
             try:
-                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                _lock(descriptor, wait=False)
                 temporary.unlink()
             finally:
                 os.close(descriptor)
@@ -121,10 +125,17 @@ def _create_temporary(path: Path) -> tuple[Path, int]:
         flags = os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
         descriptor = os.open(temporary, flags, 0o666)  # the umask applies
         with suppress(OSError):  # a file system without locks; nobody removes the file then
-            fcntl.flock(descriptor, fcntl.LOCK_EX)
+            _lock(descriptor, wait=True)
         if os.path.lexists(temporary):
             return temporary, descriptor
         os.close(descriptor)  # `remove_temporary_files` removed it before it was locked
+
+
+def _lock(descriptor: int, wait: bool) -> None:
+    """Lock a file; `OSError` if that is not possible."""
+    if fcntl is None:
+        raise OSError("the system has no locks of files")
+    fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
 
 
 @contextmanager

@@ -1,6 +1,5 @@
 """Lock of a results directory: one process at a time plays into it."""
 
-import fcntl
 import os
 import socket
 import time
@@ -12,6 +11,11 @@ from typing import Final
 
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.quoting import for_terminal
+
+try:
+    import fcntl
+except ImportError as error:
+    raise ImportError("a study needs locks of files (the module fcntl): use Linux or macOS") from error
 
 LOCK_FILE: Final = "lock"
 """Name of the locked file."""

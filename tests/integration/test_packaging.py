@@ -9,8 +9,11 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
 
 import kswarms
+
+pytest.importorskip("build", reason="needs the extra `test`")
 
 ROOT = Path(__file__).parents[2]
 
@@ -47,7 +50,8 @@ def run(*command: str | Path, cwd: Path, **environment: str) -> str:
 
 
 def build(tree: Path, kind: str, directory: Path) -> Path:
-    run("-m", "hatchling", "build", "-t", kind, "-d", directory, cwd=tree)
+    # Without isolation: hatchling is installed, in the version that pyproject.toml asks for.
+    run("-m", "build", "--no-isolation", f"--{kind}", "--outdir", directory, cwd=tree)
     (package,) = directory.iterdir()
     return package
 
@@ -79,12 +83,50 @@ def test_the_wheel_contains_the_files_of_kswarms_and_no_links(wheel: Path) -> No
     }
 
 
+@pytest.fixture(scope="module")
+def source_distribution(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return build(ROOT, "sdist", tmp_path_factory.mktemp("sdist"))
+
+
 @pytest.mark.slow
-def test_the_source_distribution_builds_the_same_wheel(wheel: Path, tmp_path: Path) -> None:
-    with tarfile.open(build(ROOT, "sdist", tmp_path / "sdist")) as archive:
+def test_the_source_distribution_builds_the_same_wheel(
+    wheel: Path, source_distribution: Path, tmp_path: Path
+) -> None:
+    with tarfile.open(source_distribution) as archive:
         archive.extractall(tmp_path, filter="data")
     (tree,) = tmp_path.glob("kswarms-*")
     assert build(tree, "wheel", tmp_path / "wheel").read_bytes() == wheel.read_bytes()
+
+
+@pytest.mark.slow
+def test_an_index_would_accept_the_packages(wheel: Path, source_distribution: Path) -> None:
+    checked = run("-m", "twine", "--no-color", "check", "--strict", wheel, source_distribution, cwd=ROOT)
+    assert checked.count("PASSED") == 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("extra", ["", "all", "test"])
+def test_no_usual_installation_needs_torch(wheel: Path, extra: str) -> None:
+    found = requirements_of(wheel, extra)
+    assert {"mesa", "numba"} < found
+    assert ("solara" in found) == (extra != "")
+    assert not {name for name in found if "torch" in name or name.startswith("nvidia")}
+
+
+def requirements_of(wheel: Path, extra: str) -> set[str]:
+    """Return the names of the libraries that the wheel needs with an extra."""
+    name = f"kswarms-{kswarms.__version__}.dist-info/METADATA"
+    lines = zipfile.ZipFile(wheel).read(name).decode().splitlines()
+    prefix = "Requires-Dist: "
+    requirements = [Requirement(line.removeprefix(prefix)) for line in lines if line.startswith(prefix)]
+    names, extras, seen = set(), {extra}, set()
+    while extras:
+        seen.add(extra := extras.pop())
+        for requirement in requirements:
+            if requirement.marker is None or requirement.marker.evaluate({"extra": extra}):
+                names.add(requirement.name)
+                extras |= (requirement.extras if requirement.name == "kswarms" else set()) - seen
+    return names
 
 
 @pytest.mark.slow
