@@ -6,7 +6,7 @@ A timed game must do the same work as a counted game of the same seed; otherwise
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import simpy
 from simpy.events import Event, Timeout
@@ -54,6 +54,23 @@ class Plan(NamedTuple):
     def robot_seconds(self) -> float:
         """Robots × seconds of a game, including learning."""
         return self.n * (self.learning + self.duration)
+
+
+REFERENCE_EVENTS: Final = {
+    Plan("avoid,attack", 50): (40465, 40534, 39869, 39990, 40134),
+    Plan("attack,attack", 50): (44133, 47150, 45477, 44896, 46571),
+    Plan("avoid,attack", 6): (5547, 5605, 5573, 5526, 6248),
+    Plan("attack,attack", 6): (10034, 6841, 6652, 9174, 6069),
+    Plan("attack,inter-learner", 50, learning=3000.0): (273714, 271397, 266113, 268245, 274317),
+}
+"""`Work.events` of commit 9f1a721 for the seeds 0 to 4. The bounds refer to a bare loop with as many events, so
+that they stay comparable when games change."""
+
+
+def reference_events(plan: Plan, seed: int, work: Work) -> int:
+    """Return the number of events in `REFERENCE_EVENTS`; that of `work` for other games."""
+    counts = REFERENCE_EVENTS.get(plan, ())
+    return counts[seed] if seed < len(counts) else work.events
 
 
 def count_work(plan: Plan, seed: int) -> Work:

@@ -77,10 +77,10 @@ def phases(plan: Plan, seeds: Sequence[int], seconds: float) -> list[list[str]]:
     """Play games for some CPU time; return rows: phase, CPU time of a game (ms), share (%)."""
     samples: Counter[str] = Counter()
     games, start = 0, time.process_time()
-    while games == 0 or time.process_time() < start + seconds:
-        with sampling(samples):
+    with sampling(samples):
+        while time.process_time() < start + seconds:
             plan.model(seeds[games % len(seeds)]).play()
-        games += 1
+            games += 1
     total = 1e3 * (time.process_time() - start) / games
     rows = [
         [phase, f"{total * count / samples.total():.1f}", f"{100 * count / samples.total():.1f}"]

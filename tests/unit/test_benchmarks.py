@@ -31,6 +31,24 @@ def test_processed_events_are_counted() -> None:
     assert 0 < work.conflicts <= work.timeouts < work.events < work.scheduled
 
 
+def test_bare_loops_have_the_events_of_the_reference_commit() -> None:
+    plan, learning = Plan("avoid,attack", 50), Plan("attack,inter-learner", 50, learning=3000.0)
+    work = count_work(TINY, 1)
+    means = [
+        sum(games.reference_events(game, seed, work) for seed in range(5)) / 5 for game in (plan, learning)
+    ]
+    assert means == [40198.4, 270757.2]
+    assert games.reference_events(TINY, 1, work) == games.reference_events(plan, 5, work) == work.events
+
+
+def test_the_cost_of_the_catalogue_is_estimated_from_a_sample(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bench, "CATALOGUE", {"fig-6.1a": CATALOGUE["fig-6.1a"]})
+    monkeypatch.setattr(bench, "attempt", lambda run, *_: (None, 2 * run.effort))
+    runs = bench.expand([CATALOGUE["fig-6.1a"]])
+    hours = 2 * sum(run.effort for run in runs) / 3600
+    assert bench.catalogue_hours(3) == [str(len(runs)), "3", f"{hours:.2f}", "0.00"]
+
+
 def test_timing_a_game_returns_positive_times() -> None:
     assert min(time_game(TINY, 1, count_work(TINY, 1))) > 0
 
@@ -129,9 +147,10 @@ def test_main_prints_all_tables(monkeypatch: pytest.MonkeyPatch, capsys: pytest.
     monkeypatch.setattr(bench, "peak_memory", lambda code: float(len(code)))
     monkeypatch.setattr(bench, "seconds_to_game", float)
     monkeypatch.setattr(bench, "overhead", lambda runs, _jobs: real(runs, 1))
-    bench.main(seeds=1, repetitions=1, duration=60.0, sizes=(6, 24), runs=20)
+    monkeypatch.setattr(bench, "attempt", lambda run, *_: (None, run.effort))
+    bench.main(seeds=1, repetitions=1, duration=60.0, sizes=(6, 24), sample=3, runs=20)
     printed = capsys.readouterr().out
-    assert printed.count("  bound") == 6
+    assert printed.count("  bound") == 7
     ((n, side, *_),) = [line.split() for line in printed.splitlines() if line.startswith("  24 ")]
     assert (n, side) == ("24", "4.0")  # four times as many robots on four times the area
 
