@@ -63,8 +63,8 @@ REFERENCE_EVENTS: Final = {
     Plan("attack,attack", 6): (10034, 6841, 6652, 9174, 6069),
     Plan("attack,inter-learner", 50, learning=3000.0): (273714, 271397, 266113, 268245, 274317),
 }
-"""`Work.events` of commit 9f1a721 for the seeds 0 to 4. The bounds refer to a bare loop with as many events, so
-that they stay comparable when games change."""
+"""`Work.events` of commit 9f1a721 for the seeds 0 to 4. The bounds refer to a bare loop with as many events,
+so that they stay comparable when games change."""
 
 
 def reference_events(plan: Plan, seed: int, work: Work) -> int:
