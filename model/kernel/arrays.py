@@ -45,6 +45,8 @@ class Pairs(NamedTuple):
     second: Rows
     close_first: Rows  # row k: the k-th pair that nearly touches
     close_second: Rows
+    overlap_first: Rows  # the same for pairs that overlap, in the relaxation
+    overlap_second: Rows
 
 
 class Work(NamedTuple):
@@ -55,8 +57,8 @@ class Work(NamedTuple):
     shove_x: Floats  # displacement by others; in the relaxation, correction of one pass
     shove_y: Floats
     touches: Integers  # contacts; in the relaxation, overlaps
-    queued: Integers  # whether the relaxation may move it
-    queue: Rows  # row k: the k-th robot that the relaxation may move; one element more
+    queued: Integers  # 1 if it is in the queue
+    queue: Rows  # row k: the k-th robot that the relaxation moves; one element more
     origin_x: Floats  # position at the last rebuild of the pairs, NaN before the first
     origin_y: Floats
     cell: Integers  # cell at the last rebuild

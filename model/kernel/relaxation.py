@@ -86,28 +86,29 @@ def relax_close(
     `done` passes were done before. Return `done` plus the number of passes, which is 0 if no pair overlaps.
     Other pairs may come close in these passes.
     """
-    move_x, move_y, shove_x, shove_y = work.move_x, work.move_y, work.shove_x, work.shove_y
-    count = work.touches
-    for i in range(len(x)):
-        move_x[i] = 0.0
-        move_y[i] = 0.0
-        shove_x[i] = 0.0
-        shove_y[i] = 0.0
-        count[i] = 0
-    if _measure_overlaps(x, y, radius, work, pairs, n_close) <= TOLERANCE:
-        return done
-    n_queued = _queue_bodies(work, pairs, n_close)
+    begin, n_moved = done, 0
+    _reset(work)
     if done >= _STUCK:
         _bend(x, y, radius, work, pairs, n_close)
-    for k in range(_PASSES):
+    while done < begin + _PASSES:
         if done % _FORGET_EVERY == _FORGET_AFTER:
             n_close = _forget_resting(x, y, radius, work, pairs, n_close)
-            n_queued = _queue_bodies(work, pairs, n_close)
-        if k > 0 and _measure_overlaps(x, y, radius, work, pairs, n_close) <= TOLERANCE:
+        n_overlaps, worst = _measure_overlaps(x, y, radius, work, pairs, n_close)
+        if worst <= TOLERANCE:
             break
-        _move_bodies(x, y, limit, work, n_queued, _momentum(done))
+        n_moved = _move_bodies(x, y, limit, work, pairs, n_overlaps, n_moved, _momentum(done))
         done += 1
     return done
+
+
+@compiled
+def _reset(work: Work) -> None:
+    for i in range(len(work.touches)):
+        work.move_x[i] = 0.0
+        work.move_y[i] = 0.0
+        work.shove_x[i] = 0.0
+        work.shove_y[i] = 0.0
+        work.touches[i] = 0
 
 
 @compiled
@@ -137,22 +138,6 @@ def _bend(x: Floats, y: Floats, radius: float, work: Work, pairs: Pairs, n_close
 
 
 @compiled
-def _queue_bodies(work: Work, pairs: Pairs, n_close: int) -> int:
-    """List the bodies of the close pairs; return their number."""
-    close_first, close_second = pairs.close_first, pairs.close_second
-    queued, queue = work.queued, work.queue
-    for i in range(len(queued)):
-        queued[i] = 0
-    size = 0
-    for c in range(n_close):
-        for i in (close_first[c], close_second[c]):
-            queue[size] = i
-            size += 1 - queued[i]
-            queued[i] = 1
-    return size
-
-
-@compiled
 def _forget_resting(x: Floats, y: Floats, radius: float, work: Work, pairs: Pairs, n_close: int) -> int:
     """Keep the close pairs that overlap or move; return their number."""
     close_first, close_second = pairs.close_first, pairs.close_second
@@ -170,16 +155,18 @@ def _forget_resting(x: Floats, y: Floats, radius: float, work: Work, pairs: Pair
 
 
 @compiled
-def _measure_overlaps(x: Floats, y: Floats, radius: float, work: Work, pairs: Pairs, n_close: int) -> float:
-    """Add half of each overlap to the corrections of both bodies; return the greatest overlap (m)."""
-    close_first, close_second = pairs.close_first, pairs.close_second
-    shove_x, shove_y, count = work.shove_x, work.shove_y, work.touches
+def _measure_overlaps(
+    x: Floats, y: Floats, radius: float, work: Work, pairs: Pairs, n_close: int
+) -> tuple[int, float]:
+    """Add half of each overlap to the corrections of both bodies; return the number and the greatest (m)."""
+    shove_x, shove_y, touches = work.shove_x, work.shove_y, work.touches
+    first, second = pairs.overlap_first, pairs.overlap_second
+    n_overlaps = _list_overlaps(x, y, radius, pairs, n_close)
     worst = 0.0
-    for c in range(n_close):
-        i = close_first[c]
-        j = close_second[c]
+    for c in range(n_overlaps):
+        i = first[c]
+        j = second[c]
         dx, dy = _offset(x, y, i, j)
-        # No branch for pairs without overlap: in a jam, half of the branch predictions would fail.
         distance = math.sqrt(dx * dx + dy * dy)
         overlap = max(0.0, 2.0 * radius - distance)
         worst = max(worst, overlap)
@@ -190,10 +177,23 @@ def _measure_overlaps(x: Floats, y: Floats, radius: float, work: Work, pairs: Pa
         shove_y[i] -= part * dy
         shove_x[j] += part * dx
         shove_y[j] += part * dy
-        overlapping = 1 if overlap > _TOUCH else 0
-        count[i] += overlapping
-        count[j] += overlapping
-    return worst
+        touches[i] += int(overlap > _TOUCH)
+        touches[j] += int(overlap > _TOUCH)
+    return n_overlaps, worst
+
+
+@compiled
+def _list_overlaps(x: Floats, y: Floats, radius: float, pairs: Pairs, n_close: int) -> int:
+    """List the close pairs that overlap, as `list_close` does; return their number."""
+    close_first, close_second = pairs.close_first, pairs.close_second
+    first, second = pairs.overlap_first, pairs.overlap_second
+    size = 0
+    for c in range(n_close):
+        dx, dy = _offset(x, y, close_first[c], close_second[c])
+        first[size] = close_first[c]
+        second[size] = close_second[c]
+        size += int(dx * dx + dy * dy < 4.0 * radius * radius)
+    return size
 
 
 @compiled
@@ -204,22 +204,37 @@ def _momentum(done: int) -> float:
 
 
 @compiled
-def _move_bodies(x: Floats, y: Floats, limit: float, work: Work, n_queued: int, momentum: float) -> None:
-    """Move the queued bodies by their summed corrections, within the walls, and reset the sums.
+def _move_bodies(
+    x: Floats, y: Floats, limit: float, work: Work, pairs: Pairs, n_overlaps: int, n_moved: int, momentum: float
+) -> int:
+    """Move the overlapping bodies by their summed corrections, within the walls, and reset the sums.
 
-    A body without overlap loses its momentum, which would push it into the next body.
+    The first `n_moved` bodies of the queue moved in the last pass. A body that overlaps no longer loses its
+    momentum, which would push it into the next body. Return the number of bodies moved.
     """
     move_x, move_y, shove_x, shove_y = work.move_x, work.move_y, work.shove_x, work.shove_y
-    count, queue = work.touches, work.queue
-    for q in range(n_queued):
+    touches, queued, queue = work.touches, work.queued, work.queue
+    for q in range(n_moved):
+        i = queue[q]
+        kept = min(1, touches[i])
+        move_x[i] *= kept
+        move_y[i] *= kept
+    size = 0
+    for c in range(n_overlaps):
+        for i in (pairs.overlap_first[c], pairs.overlap_second[c]):
+            queue[size] = i
+            size += 1 - queued[i]
+            queued[i] = 1
+    for q in range(size):
         i = queue[q]
         # The sum of three or more corrections would overshoot; twice their mean does not.
-        scale = 2.0 / max(2, count[i])
-        kept = momentum if count[i] > 0 else 0.0
-        move_x[i] = kept * move_x[i] + scale * shove_x[i]
-        move_y[i] = kept * move_y[i] + scale * shove_y[i]
+        scale = 2.0 / max(2, touches[i])
+        move_x[i] = momentum * move_x[i] + scale * shove_x[i]
+        move_y[i] = momentum * move_y[i] + scale * shove_y[i]
         x[i] = min(limit, max(-limit, x[i] + move_x[i]))
         y[i] = min(limit, max(-limit, y[i] + move_y[i]))
         shove_x[i] = 0.0
         shove_y[i] = 0.0
-        count[i] = 0
+        touches[i] = 0
+        queued[i] = 0
+    return size
