@@ -103,7 +103,8 @@ def list_close(x: Floats, y: Floats, pairs: Pairs, n_pairs: int, reach: float) -
 
     Each pair is written and counted if it is close. With a branch, half of its predictions would fail.
     """
-    first, second, close_first, close_second = pairs.first, pairs.second, pairs.close_first, pairs.close_second
+    first, second = pairs.first, pairs.second
+    close_first, close_second = pairs.close_first, pairs.close_second
     squared = reach * reach
     size = 0
     for k in range(n_pairs):

@@ -205,7 +205,14 @@ def _momentum(done: int) -> float:
 
 @compiled
 def _move_bodies(
-    x: Floats, y: Floats, limit: float, work: Work, pairs: Pairs, n_overlaps: int, n_moved: int, momentum: float
+    x: Floats,
+    y: Floats,
+    limit: float,
+    work: Work,
+    pairs: Pairs,
+    n_overlaps: int,
+    n_moved: int,
+    momentum: float,
 ) -> int:
     """Move the overlapping bodies by their summed corrections, within the walls, and reset the sums.
 
