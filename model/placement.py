@@ -116,20 +116,21 @@ def _separate(x: Floats, y: Floats, grid: _Grid, reach: float) -> float:
 
     Return the least distance of two places (m). It is smaller than promised if they do not fit.
     """
-    n, done = len(x), 0
+    n = len(x)
     work, pairs = make_work(n), make_pairs(4 * n)
     limit = (grid.limit + reach) - reach  # rounded as in the kernel
     np.clip(x, -limit, limit, out=x)
     np.clip(y, -limit, limit, out=y)
+    before, done = -1, 0
     while True:
         n_close, distance = _list_close(x, y, grid, CLOSE * reach, pairs)
         if n_close > len(pairs.first):
             pairs = make_pairs(n_close)
-            continue
-        before = done
-        done = relax_close(x, y, reach, limit, work, pairs, n_close, before)
-        if done == before or done >= MAX_PASSES:
+        elif done == before or done >= MAX_PASSES:
             return distance
+        else:
+            before = done
+            done = relax_close(x, y, reach, limit, work, pairs, n_close, before)
 
 
 @compiled
