@@ -143,8 +143,7 @@ def _slide(x: float, y: float, friction: float, contacts: Records, count: int) -
         if excess <= 0.0:
             continue
         tangential = y * nx - x * ny
-        slid = max(0.0, abs(tangential) - friction * excess)
-        tangential = slid if tangential > 0.0 else -slid
+        tangential = math.copysign(max(0.0, abs(tangential) - friction * excess), tangential)
         x = allowed[worst] * nx - tangential * ny
         y = allowed[worst] * ny + tangential * nx
     return x, y

@@ -11,7 +11,7 @@ from kswarms.agents.common.jit import compiled
 from kswarms.agents.robot.sensing import sense, walls_met, wrap
 from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, HOMING_ERROR, LEG, LEG_OVER, TURN
 from kswarms.model.kernel.arrays import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE, WALL, Memory
-from kswarms.model.kernel.neighbours import list_close, within
+from kswarms.model.kernel.neighbours import within
 
 
 @compiled
@@ -57,17 +57,24 @@ def _look_ahead(m: Memory) -> None:
     x, y, phase = m.bodies.x, m.bodies.y, m.bodies.phase
     forward_x, forward_y = m.bodies.forward_x, m.bodies.forward_y
     nearest, squares = m.work.nearest, m.work.squared
-    first, second = m.pairs.close_first, m.pairs.close_second
-    scalars, preempt, reach = m.scalars, m.scalars["preempt"][0], m.scalars["conflict_reach"][0]
-    limit, front_cosine = reach * reach, scalars["front_cosine"][0]
+    first, second, scalars = m.pairs.close_first, m.pairs.close_second, m.scalars
+    limit, front_cosine = scalars["conflict_reach"][0] ** 2, scalars["front_cosine"][0]
     for i in range(len(x)):
         nearest[i] = -1
         squares[i] = limit
-    for k in range(list_close(x, y, m.pairs, scalars["n_pairs"][0], reach)):
+    busy = ACTION if scalars["preempt"][0] == 0 else -1
+    size = 0
+    for k in range(scalars["n_pairs"][0]):  # without branches, as in `list_close`
+        i = m.pairs.first[k]
+        j = m.pairs.second[k]
+        dx = x[j] - x[i]
+        dy = y[j] - y[i]
+        first[size] = i
+        second[size] = j
+        size += int(dx * dx + dy * dy <= limit) & (int(phase[i] != busy) | int(phase[j] != busy))
+    for k in range(size):
         i = first[k]
         j = second[k]
-        if phase[i] == ACTION and phase[j] == ACTION and not preempt:
-            continue
         dx = x[j] - x[i]
         dy = y[j] - y[i]
         squared = dx * dx + dy * dy
