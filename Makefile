@@ -13,7 +13,7 @@ GAMES := tests/outcomes tests/baseline
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:  # two installations into one environment would collide
-.PHONY: help demo explore test lint types versions docs bench profile full clean
+.PHONY: help demo explore test lint types versions docs bench profile peers full clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -54,6 +54,9 @@ bench: $(RUN)  ## measure speed, memory and start-up
 
 profile: $(RUN)  ## measure where the time of a game goes
 	$(BIN)/python -m benchmarks.profile
+
+peers: $(RUN)  ## measure other simulators, installed into a temporary environment
+	$(BIN)/python -m benchmarks.peers
 
 full: $(TEST)  ## run all tests with the full numbers of seeds (long)
 	$(BIN)/python -m pytest -n auto --dist loadfile -m "full or not full" -o faulthandler_timeout=0

@@ -241,7 +241,7 @@ def main(
     )
     imports = "from kswarms import ForagingModel"
     game = f"{imports}\nForagingModel(n={{}}, side={{}}, record='', seed=0, duration={{}}).play()"
-    codes = (imports, game.format(50, 2.0, duration), game.format(20_000, 40.0, duration / 600))
+    codes = (imports, game.format(50, 2.0, duration), game.format(20_000, 40.0, duration / 20))
     base, *others = map(peak_memory, codes)
     print_table(
         "Peak memory of a new process, compiled code cached",

@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from benchmarks import bench, games, profile
+from benchmarks import bench, games, peer_worlds, peers, profile
 from benchmarks import report as report_benchmark
 from benchmarks.games import Plan, WorkError, count_work, time_game
 from kswarms.agents.common.columns import column_names
@@ -195,3 +195,29 @@ def test_the_report_benchmark_fails_above_a_bound(
     assert "rows of runs 7; 0 s (at most 120); 320 MB" in capsys.readouterr().out
     monkeypatch.setattr(report_benchmark, "MAX_MEMORY", 300)
     assert report_benchmark.main() == 1
+
+
+def test_peers_are_installed_and_measured_in_turn(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    commands: list[list[str]] = []
+
+    def run(words: list[Any], **_: object) -> subprocess.CompletedProcess[str]:
+        commands.append([str(word) for word in words])
+        return subprocess.CompletedProcess(words, 0, f"{1000.0 * len(commands)}\n")
+
+    monkeypatch.setattr(subprocess, "run", run)
+    monkeypatch.setattr(peers.venv, "create", lambda *_args, **_options: None)
+    monkeypatch.setattr(peers, "find_spec", lambda _name: None)
+    peers.main(tmp_path, rounds=3)
+    assert set(peers.PACKAGES) < set(commands[0])
+    assert [words[-2] for words in commands[1:]] == 3 * [name for name in peers.PEERS if name != "vmas"]
+    printed = capsys.readouterr().out
+    (row,) = [line for line in printed.splitlines() if line.startswith("  mesa  ")]
+    assert row.split() == ["mesa", "9,000", "1.29"]  # medians of the second round: 9,000 / 7,000
+    assert "vmas: not measured" in printed
+
+
+def test_every_peer_has_a_world() -> None:
+    assert set(peers.PEERS) == set(peer_worlds.WORLDS)
+    assert peer_worlds.throughput("simpy", 0.0) > 0
