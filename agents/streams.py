@@ -4,11 +4,14 @@ Every robot has a stream for each kind of decision. Two games with the same seed
 numbers for the same decisions, and an additional robot does not change the numbers of the others.
 """
 
+from collections.abc import Iterator
 from enum import IntEnum
 from typing import Final
 
 from numpy.random import PCG64, Generator, SeedSequence
 
+_FIRST_BLOCK: Final = 4
+_LARGEST_BLOCK: Final = 64
 ENVIRONMENT: Final = 2**32 - 1  # in place of a robot's number, for streams of the environment
 
 
@@ -45,3 +48,15 @@ class Streams:
         if generator is None:
             generator = self._streams[purpose] = stream(self.seed, self.robot, purpose)
         return generator
+
+    def draws(self, purpose: Purpose, method: str, *arguments: float) -> Iterator[float]:
+        """Yield the numbers that a method of the stream draws, such as ``uniform`` with its two limits.
+
+        The numbers are those of single draws. They are drawn in blocks, which takes a fraction of the time.
+        The blocks grow, because a robot of a large swarm may need few of them.
+        """
+        draw = getattr(self.generator(purpose), method)
+        size = _FIRST_BLOCK
+        while True:
+            yield from draw(*arguments, size).tolist()
+            size = min(2 * size, _LARGEST_BLOCK)

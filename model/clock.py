@@ -20,9 +20,9 @@ class Instant(Event):
         self._ok = True
         self._value = None
         self._priority = priority
-        self._callback = callback
+        self._callbacks = [callback]  # SimPy drops the list from the event, but does not change it
 
     def schedule_in(self, delay: int) -> None:
         """Schedule the event `delay` periods from now; it must not be scheduled already."""
-        self.callbacks = [self._callback]
+        self.callbacks = self._callbacks
         self.env.schedule(self, self._priority, delay)  # type: ignore[arg-type]  # SimPy's type has only 0 and 1

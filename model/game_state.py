@@ -9,6 +9,7 @@ import numpy as np
 import simpy
 from mesa.experimental.continuous_space import ContinuousSpace
 
+from kswarms.agents.actions import TOWARDS
 from kswarms.agents.common.errors import InputError, require_type
 from kswarms.agents.robot.conflict import Conflict
 from kswarms.agents.robot.krembot import Krembot
@@ -24,6 +25,8 @@ class GameState(MesaModel):
     ----------
     env : simpy.Environment
         The clock; it counts control periods.
+    actions : sequence of Action
+        The actions of the game, the objects that policies choose from.
     arena : Arena
         Walls, stations and bases.
     space : mesa.experimental.continuous_space.ContinuousSpace
@@ -62,7 +65,12 @@ class GameState(MesaModel):
         self.arena = game.arena(self.seed)
         self.controller = controller_constants(game)
         periods = self.controller.periods
-        self.action_periods: Mapping[str, int] = {a.name: periods(a.duration) for a in game.action_set}
+        self.actions = game.action_set
+        self.action_periods: Mapping[str, int] = {a.name: periods(a.duration) for a in self.actions}
+        # By identity: the hash and the fields of an `Action` are slow to get.
+        self.timed_actions: Mapping[int, tuple[bool, int]] = {
+            id(a): (a.direction == TOWARDS, self.action_periods[a.name]) for a in self.actions
+        }
         self.conflict_log: list[Conflict] | None = [] if log_conflicts else None
         self.game_begin = math.ceil(game.learning / game.parameters.period - 1e-9)
         self.phase = "learning" if self.game_begin > 0 else "game"

@@ -54,7 +54,7 @@ def place_robots(game: Game, arena: Arena, seed: int, random: Random) -> tuple[R
 def make_robots(model: Host, game: Game, seed: int) -> list[Krembot]:
     """Make the robots of all swarms, each with its policy and random streams."""
     step = game.parameters.period * game.body.top_speed
-    actions, swarms = game.action_set, len(game.swarms)
+    actions, swarms = model.actions, len(game.swarms)
     robots: list[Krembot] = []
     for k, swarm in enumerate(game.swarms):
         specs = parse_policies(swarm.policy)

@@ -5,6 +5,7 @@ user-defined. All robots of a policy share one reward object.
 """
 
 from abc import ABC, abstractmethod
+from functools import lru_cache
 from typing import Annotated, Final
 
 from pydantic import Discriminator, Field, Tag
@@ -29,6 +30,10 @@ _Ratio = Annotated[float, Field(strict=True, gt=0, lt=3)]
 _Ratios = Annotated[
     Annotated[_Ratio, Tag("for-all")] | Annotated[dict[int, _Ratio], Tag("by-opponent")], Discriminator(_kind)
 ]
+
+
+Weights = tuple[float, list[float]]
+"""Weight of T(p), and the weight of T(a) for each number of active sensors."""
 
 
 class Reward(FrozenModel, ABC):
@@ -57,6 +62,14 @@ class Reward(FrozenModel, ABC):
         """
 
 
+    def weights(self, direction: int, inter: bool, opponent: int) -> Weights | None:
+        """Return the weights of T(p) and, for n' from 0 to 8, of T(a), if R is their sum; else None.
+
+        They save a call of `of` for each conflict. A subclass that has its own `of` inherits no weights.
+        """
+        return None
+
+
 class WLU(Reward):
     """Wonderful Life Utility: R = (3 − b)/2 · T(p) + (n'/8) · σ · Δ · T(a) (Eqs. 5.4, 6.2, 7.2)."""
 
@@ -69,10 +82,31 @@ class WLU(Reward):
 
     def of(self, t_a: float, t_p: float, n_active: int, direction: int, inter: bool, opponent: int) -> float:
         """Return R (s)."""
-        delta = self.delta if isinstance(self.delta, float) else self.delta.get(opponent, 0.125)
-        b = self.b if isinstance(self.b, float) else self.b.get(opponent, 1.0)
+        delta, b = self._parameters(opponent)
         program = program_weight_of_equals(b)
         return estimated_wlu(program, t_a, t_p, n_active, sigma(inter, direction), delta)
+
+    def weights(self, direction: int, inter: bool, opponent: int) -> Weights | None:
+        """Return the weights of T(p) and, for each n', of T(a)."""
+        if type(self).of is not WLU.of:
+            return None
+        delta, b = self._parameters(opponent)
+        return _wlu_weights(b, sigma(inter, direction), delta)
+
+
+    def _parameters(self, opponent: int) -> tuple[float, float]:
+        """Return Δ and b of an opponent."""
+        delta, b = self.delta, self.b
+        return (
+            delta if isinstance(delta, float) else delta.get(opponent, 0.125),
+            b if isinstance(b, float) else b.get(opponent, 1.0),
+        )
+
+
+@lru_cache(maxsize=64)
+def _wlu_weights(b: float, sign: int, delta: float) -> Weights:
+    of_action = [estimated_wlu(0.0, 1.0, 0.0, n, sign, delta) for n in range(SENSORS + 1)]
+    return program_weight_of_equals(b), of_action
 
 
 class IndividualUtility(Reward):

@@ -6,6 +6,8 @@ user-defined. All robots of a policy share one rule object; learned values are i
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Callable
+from functools import partial
 from typing import Final
 
 from numpy.random import Generator
@@ -32,6 +34,10 @@ class Rule(FrozenModel, ABC):
             untried = [arm for arm, count in enumerate(bandit.count) if count < FORGOTTEN]
             return untried[_random_index(len(untried), rng)]
         return self.prefer(bandit, rng)
+
+    def chooser(self) -> Callable[[Bandit, Generator], int]:
+        """Return `choose`, or a faster function that returns the same."""
+        return self.choose
 
     @abstractmethod
     def prefer(self, bandit: Bandit, rng: Generator) -> int:
@@ -62,6 +68,13 @@ class UCB(Rule):
     def prefer(self, bandit: Bandit, rng: Generator) -> int:
         """Return the arm with the greatest bound, ties broken at random."""
         return _argmax(self.bounds(bandit), rng)
+
+    def chooser(self) -> Callable[[Bandit, Generator], int]:
+        """Return a function without access to fields, which is slow, unless a subclass chooses otherwise."""
+        kind = type(self)
+        if (kind.choose, kind.prefer, kind.bounds) != (UCB.choose, UCB.prefer, UCB.bounds):
+            return self.choose
+        return partial(_greatest_bound, self.gamma, self.choose)
 
 
 class DiscountedUCB(UCB):
@@ -126,6 +139,26 @@ def make_rule(rule: str | Rule) -> Rule:
     A text is the name of one of `RULES` or a user-defined subclass of `Rule`, with arguments.
     """
     return rule if isinstance(rule, Rule) else build("rule", rule, RULES, Rule)
+
+
+def _greatest_bound(
+    gamma: float, choose: Callable[[Bandit, Generator], int], bandit: Bandit, rng: Generator
+) -> int:
+    """Return the arm with the greatest bound of `UCB`; leave untried arms and ties to `choose`."""
+    counts = bandit.count
+    if min(counts) < FORGOTTEN:
+        return choose(bandit, rng)
+    scale, sqrt = gamma * math.log(sum(counts)), math.sqrt
+    arm = best = -1
+    greatest, is_tie = -math.inf, False
+    for reward, time, count in zip(bandit.reward, bandit.time, counts):  # noqa: B905  # same length
+        arm += 1
+        bound = reward / time + sqrt(scale / count)
+        if bound > greatest:
+            best, greatest, is_tie = arm, bound, False
+        elif bound == greatest:
+            is_tie = True
+    return choose(bandit, rng) if is_tie else best
 
 
 def _argmax(values: list[float], rng: Generator) -> int:

@@ -88,6 +88,15 @@ class Learner:
             if opponent - 1 not in self.bandits:
                 raise InputError("reward", reward, f"names swarm {opponent}, which is not learned about")
         self.learning = True
+        self._choose = self.rule.chooser()
+        self._weights = {
+            opponent: [
+                self.reward.weights(action.direction, opponent != self.swarm, opponent + 1)
+                for action in self.actions
+            ]
+            for opponent in self.bandits
+        }
+        self._learned: dict[int, Action] = {}
         self._generator = setting.streams.generator
         self._rng: Generator | None = None  # stream for exploration, created on first use
         self._opponent = -1
@@ -100,15 +109,15 @@ class Learner:
         if bandit is None:
             return self._otherwise
         if not self.learning:
-            return self.learned_action(opponent)
+            return self._learned.get(opponent) or self.learned_action(opponent)
         rng = self._rng
         if rng is None:
             rng = self._rng = self._generator(Purpose.EXPLORE)
-        self._arm = self.rule.choose(bandit, rng)
-        if not 0 <= self._arm < len(self.actions):
-            raise InputError("rule", self._arm, f"must choose 0 to {len(self.actions) - 1}")
+        arm = self._arm = self._choose(bandit, rng)
+        if not 0 <= arm < len(self.actions):
+            raise InputError("rule", arm, f"must choose 0 to {len(self.actions) - 1}")
         bandit.choices += 1
-        return self.actions[self._arm]
+        return self.actions[arm]
 
     def learn(self, t_a: float, t_p: float, n_active: int) -> tuple[float, float]:
         """Reward the arm of the latest conflict; return R (s) and the arm's Q, NaN if nothing is learned.
@@ -119,8 +128,13 @@ class Learner:
         bandit = self.bandits.get(opponent)
         if bandit is None or not self.learning:
             return _NOTHING
-        direction, inter = self.actions[arm].direction, opponent != self.swarm
-        reward = self.reward.of(t_a, t_p, n_active, direction, inter, opponent + 1)
+        weights = self._weights[opponent][arm]
+        if weights is not None:
+            of_program, of_action = weights
+            reward = of_program * t_p + of_action[n_active] * t_a
+        else:
+            direction, inter = self.actions[arm].direction, opponent != self.swarm
+            reward = self.reward.of(t_a, t_p, n_active, direction, inter, opponent + 1)
         if not isfinite(reward):
             raise InputError("reward", reward, f"must be finite, also for T(a)={t_a:g}, T(p)={t_p:g}")
         bandit.update(arm, reward, t_a + t_p, self._factor)
@@ -134,6 +148,7 @@ class Learner:
     def freeze(self) -> None:
         """Stop learning."""
         self.learning = False
+        self._learned = {swarm: self.learned_action(swarm) for swarm in self.bandits}
 
     def snapshot(self) -> list[dict[str, Any]]:
         """Return the learned values of each arm: opponent's swarm (from 1), action, Σ R, Σ T, N and Q."""

@@ -1,12 +1,13 @@
 """Interface of the model as robots use it; `GameModel` implements it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 import simpy
 from mesa import Agent
 from mesa.experimental.continuous_space import ContinuousSpace
 
+from kswarms.agents.actions import Action
 from kswarms.agents.robot.conflict import Conflict
 from kswarms.agents.robot.controller import Controller
 from kswarms.agents.robot.state import RobotStates
@@ -19,7 +20,9 @@ class Host(Protocol):
     space: ContinuousSpace
     states: RobotStates
     controller: Controller
+    actions: Sequence[Action]
     action_periods: Mapping[str, int]
+    timed_actions: Mapping[int, tuple[bool, int]]
     conflict_log: list[Conflict] | None
 
     def remove(self, robot: Agent) -> None:

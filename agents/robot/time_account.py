@@ -25,7 +25,7 @@ class TimedAgent(ContinuousSpaceAgent):
     # Slots, here and in `Krembot`, are faster than a dict of more than thirty attributes.
     __slots__ = (
         "_active", "_env", "_is_open", "_is_over", "_learn", "_log", "_open", "_open_t_a",
-        "_opponent_swarm", "_period", "_phase", "_since", "_states", "conflicts", "index", "policy",
+        "_opponent_swarm", "_period", "_phase", "_settles", "_since", "_states", "conflicts", "index", "policy",
         "t_a", "t_p",
     )
 
@@ -43,9 +43,10 @@ class TimedAgent(ContinuousSpaceAgent):
         self._learn: Callable[[float, float, int], tuple[float, float]] | None
         self._learn = getattr(policy, "learn", None)
         self._log = model.conflict_log
+        self._settles = self._learn is not None or self._log is not None  # whether conflicts stay open
         self._since = int(model.env.now)  # start of the current action or program (periods)
         self._is_over = False  # whether the game has ended
-        self._is_open = False  # whether a conflict is open
+        self._is_open = False  # whether a conflict is open, to be learned from or logged
         self._active = 0  # number of active sensors at the start of the latest conflict
         self._opponent_swarm = -1  # swarm of the opponent of the latest conflict
         self._open: tuple[Any, ...] = ()  # first fields of the open `Conflict`, if conflicts are logged
@@ -125,17 +126,12 @@ class TimedAgent(ContinuousSpaceAgent):
         self.t_p += elapsed
         if self._is_open:
             self._is_open = False
-            if self._learn is not None or self._log is not None:
-                self._settle(elapsed, learn)
-
-    def _settle(self, t_p: int, learn: bool) -> None:
-        """Reward and log the conflict that ends with T(p) = `t_p` (periods)."""
-        reward = value = math.nan
-        if learn and self._learn is not None:
-            period = self._period
-            reward, value = self._learn(self._open_t_a * period, t_p * period, self._active)
-        if self._log is not None:
-            self._log.append(Conflict._make((*self._open, self._open_t_a, t_p, reward, value)))
+            reward = value = math.nan
+            if learn and self._learn is not None:
+                period = self._period
+                reward, value = self._learn(self._open_t_a * period, elapsed * period, self._active)
+            if self._log is not None:
+                self._log.append(Conflict._make((*self._open, self._open_t_a, elapsed, reward, value)))
 
     def restart(self, now: int) -> None:
         """Reset times and conflicts to 0 and stop learning."""
@@ -145,6 +141,7 @@ class TimedAgent(ContinuousSpaceAgent):
         self.conflicts = [0] * len(self.conflicts)
         if self._learn is not None:
             self._learn = None
+            self._settles = self._log is not None
             cast(LearningPolicy, self.policy).freeze()
 
     def finish(self, now: int) -> None:
@@ -152,18 +149,3 @@ class TimedAgent(ContinuousSpaceAgent):
         if not self._is_over:
             self.close(now, learn=False)
             self._is_over = True
-
-    def _begin(self, swarm: int, active: int, fields: tuple[Any, ...]) -> None:
-        """Open a conflict with a robot of `swarm`; `fields` are the first fields of its record."""
-        self._opponent_swarm = swarm
-        self._is_open = True
-        self._active = active
-        self._open = fields
-        self.conflicts[swarm] += 1
-
-    def _end_action(self) -> None:
-        """Count the action that ends now; program follows."""
-        now: int = self._env.now  # type: ignore[assignment]  # whole periods; `cast` would cost a call
-        elapsed = self._open_t_a = now - self._since
-        self.t_a[self._opponent_swarm] += elapsed
-        self._since = now
