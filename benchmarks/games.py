@@ -9,8 +9,9 @@ from collections.abc import Callable, Iterable
 from typing import Final, NamedTuple
 
 import simpy
-from simpy.events import Event, Timeout
+from simpy.events import Event
 
+from kswarms.agents.robot.krembot import Timer
 from kswarms.model.foraging import ForagingModel
 
 
@@ -91,7 +92,7 @@ def count_work(plan: Plan, seed: int) -> Work:
 
     model.env.step = counted_step  # type: ignore[method-assign]
     model.play()
-    work = _work(model, kinds[Timeout], kinds.total())
+    work = _work(model, kinds[Timer], kinds.total())
     played = sum(row["t_a_intra"] + row["t_a_inter"] + row["t_p"] for row in model.results())
     measured = plan.n * plan.duration
     if abs(played - measured) > 1e-6 * measured:

@@ -1,7 +1,7 @@
 """State of a game: clock, robots and scores. `GameModel` adds the events."""
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import cast
 
 import mesa
@@ -9,7 +9,7 @@ import numpy as np
 import simpy
 from mesa.experimental.continuous_space import ContinuousSpace
 
-from kswarms.agents.actions import TOWARDS
+from kswarms.agents.actions import TOWARDS, Action
 from kswarms.agents.common.errors import InputError, require_type
 from kswarms.agents.robot.conflict import Conflict
 from kswarms.agents.robot.krembot import Krembot
@@ -65,7 +65,7 @@ class GameState(MesaModel):
         self.arena = game.arena(self.seed)
         self.controller = controller_constants(game)
         periods = self.controller.periods
-        self.actions = game.action_set
+        self.actions: Sequence[Action] = game.action_set
         self.action_periods: Mapping[str, int] = {a.name: periods(a.duration) for a in self.actions}
         # By identity: the hash and the fields of an `Action` are slow to get.
         self.timed_actions: Mapping[int, tuple[bool, int]] = {

@@ -10,7 +10,7 @@ from functools import cache
 from typing import Any, Final
 
 import numpy as np
-from simpy.events import Event
+from simpy.events import NORMAL, Event
 
 from kswarms.agents.actions import TOWARDS, Action
 from kswarms.agents.body import SENSORS
@@ -36,8 +36,9 @@ class Krembot(TimedAgent):
 
     __slots__ = (
         "_action_end", "_action_periods", "_allowed", "_controller", "_drive_periods", "_flights",
-        "_generator", "_headings", "_leg_times", "_opponent", "_stride", "_stride_action", "_stride_program", "_timed_actions", "_ties", "_timer",
-        "_turn_rate", "_turn_step", "_turns", "number", "policy_name", "pucks", "swarm",
+        "_generator", "_headings", "_leg_times", "_opponent", "_stride", "_stride_action",
+        "_stride_program", "_ties", "_timed_actions", "_timer", "_turn_rate", "_turn_step", "_turns",
+        "number", "policy_name", "pucks", "swarm",
     )
 
     def __init__(
@@ -190,11 +191,11 @@ class Krembot(TimedAgent):
             self._stride[index] = 0.0
             self._drive_periods = drive
             timer.callbacks = _TURNED_TO_DRIVE
-            self._env.schedule(timer, 1, turn)
+            self._env.schedule(timer, NORMAL, turn)
         else:
             self._stride[index] = self._stride_action
             timer.callbacks = _ACTION_OVER
-            self._env.schedule(timer, 1, drive)
+            self._env.schedule(timer, NORMAL, drive)
 
     def restart(self, now: int) -> None:
         """Begin the measured game: reset pucks, times and conflicts to 0 and stop learning."""
@@ -241,7 +242,7 @@ class Krembot(TimedAgent):
         """Call `callbacks` after some periods."""
         timer = self._free_timer()
         timer.callbacks = callbacks
-        self._env.schedule(timer, 1, periods)
+        self._env.schedule(timer, NORMAL, periods)
 
     def _free_timer(self) -> "Timer":
         """Cancel the current leg, turn or drive, if there is one, and return a timer that can be set."""
@@ -286,7 +287,7 @@ def _drive_after_turn(timer: Timer) -> None:
     robot._stride[index] = robot._stride_action
     robot._turn_rate[index] = 0.0
     timer.callbacks = _ACTION_OVER
-    timer.env.schedule(timer, 1, robot._drive_periods)
+    timer.env.schedule(timer, NORMAL, robot._drive_periods)
 
 
 def _end_action(timer: Timer) -> None:
@@ -308,7 +309,7 @@ _ACTION_OVER: Final[Callbacks] = [_end_action]
 @cache
 def _flights(turn_step: float) -> list[list[tuple[int, float]]]:
     """Return the turns to each of the most vacant sensors, by their bits: periods and turn rate (rad)."""
-    turns = []
+    turns: list[list[tuple[int, float]]] = []
     for angles in ANGLES_OF:
         turns.append([])
         for angle in angles:

@@ -25,8 +25,8 @@ class TimedAgent(ContinuousSpaceAgent):
     # Slots, here and in `Krembot`, are faster than a dict of more than thirty attributes.
     __slots__ = (
         "_active", "_env", "_is_open", "_is_over", "_learn", "_log", "_open", "_open_t_a",
-        "_opponent_swarm", "_period", "_phase", "_settles", "_since", "_states", "conflicts", "index", "policy",
-        "t_a", "t_p",
+        "_opponent_swarm", "_period", "_phase", "_settles", "_since", "_states", "conflicts", "index",
+        "policy", "t_a", "t_p",
     )
 
     def __init__(self, model: Host, index: int, policy: Policy, swarms: int) -> None:
