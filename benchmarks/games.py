@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 import simpy
 from simpy.events import Event
 
-from kswarms.agents.robot.krembot import Timer
+from kswarms.agents.robot.driver import Timer
 from kswarms.model.foraging import ForagingModel
 
 

@@ -3,12 +3,13 @@
 import math
 from collections import Counter, defaultdict
 from contextlib import suppress
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import pytest
 from simpy.core import StopSimulation
-from simpy.events import Timeout
+from simpy.events import NORMAL, Event
 
+from kswarms.agents.robot.driver import END_ACTION, END_LEG, Timer
 from kswarms.agents.robot.krembot import Krembot
 from kswarms.agents.streams import Purpose, stream
 from kswarms.model.description.game import Game, Swarm
@@ -23,7 +24,7 @@ SEED = 3
 
 
 class ClockEvent(NamedTuple):
-    """An event of the clock; a timeout also has its robot, kind and start."""
+    """An event of the clock; a timer's also has its robot, kind and start."""
 
     time: int
     priority: int
@@ -42,8 +43,10 @@ class Trace:
         for name in ("begin_leg", "begin_wander_turn", "begin_wall_turn", "go_home", "meet"):
             self._count(monkeypatch, name)
         self.model = GameModel(game, seed=SEED, record=record)
-        self._step = self.model.env.step
+        self._set: list[ClockEvent] = []
+        self._step, self._schedule = self.model.env.step, self.model.env.schedule
         monkeypatch.setattr(self.model.env, "step", self.step)
+        monkeypatch.setattr(self.model.env, "schedule", self.schedule)
 
     def _count(self, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
         """Count the decision of a robot: a leg, or a turn if it then turns."""
@@ -58,24 +61,22 @@ class Trace:
 
     def step(self) -> None:
         """Record the next event and process it."""
-        self.events.append(self.read(0))
+        time, priority, _, event = self.model.env._queue[0]
+        is_motion = isinstance(event, Instant) and int(priority) == MOTION
+        self.events.append(ClockEvent(int(time), int(priority), is_motion, what=type(event).__name__))
         self._step()
 
-    def read(self, place: int) -> ClockEvent:
-        """Return an event of the clock's queue."""
-        time, priority, _, event = self.model.env._queue[place]
-        head = int(time), int(priority), isinstance(event, Instant) and int(priority) == MOTION
-        if not isinstance(event, Timeout):
-            return ClockEvent(*head)
-        assert event.callbacks is not None
-        (callback,) = event.callbacks
-        robot = callback.__self__  # type: ignore[attr-defined]
-        return ClockEvent(*head, robot.index, str(event.value), int(time) - int(event._delay))
+    def schedule(self, event: Event, priority: Any = NORMAL, delay: int = 0) -> None:
+        """Record the event of a robot when it is scheduled, because an interruption makes it anonymous."""
+        now = self.model.now
+        if isinstance(event, Timer):
+            robot = event.robot.index
+            self._set.append(ClockEvent(now + delay, int(priority), False, robot, kind_of(event, delay), now))
+        self._schedule(event, priority, delay)
 
     def timeouts(self) -> list[ClockEvent]:
-        """Return all timeouts, including those pending at the end of the game."""
-        pending = [self.read(place) for place in range(len(self.model.env._queue))]
-        return [event for event in self.events + pending if event.what]
+        """Return all events of robots, including those pending at the end of the game."""
+        return [event for event in self._set if event.what]
 
     def table(self) -> list[dict[str, Any]]:
         """Return the closed conflicts, times in periods."""
@@ -85,6 +86,16 @@ class Trace:
             for name in ("start", "t_a", "t_p"):
                 row[name] = round(row[name] / period)
         return rows
+
+
+def kind_of(event: Event, delay: int) -> str:
+    """Return the kind of an event that a robot schedules; durations tell a flight from a fight."""
+    if not isinstance(event, Timer):
+        return ""
+    if event.callbacks is END_ACTION:
+        robot = cast(Krembot, event.robot)
+        return next(name for name, periods in robot._action_periods.items() if periods == delay)
+    return "leg" if event.callbacks is END_LEG else "turn"
 
 
 def make_game(**changes: Any) -> Game:
@@ -143,9 +154,9 @@ def test_events_of_one_instant_are_ordered_by_priority(monkeypatch: pytest.Monke
     assert order == sorted(order)
     kinds = defaultdict(set)
     for event in events:
-        kind = "motion" if event.is_motion else "timeout" if event.what else "end or sample"
+        kind = "motion" if event.is_motion else "timer" if event.what == "Timer" else "end or sample"
         kinds[event.priority].add(kind)
-    assert kinds == {0: {"end or sample"}, 1: {"timeout"}, MOTION: {"motion"}}
+    assert kinds == {0: {"end or sample"}, 1: {"timer"}, MOTION: {"motion"}}
 
 
 def test_a_leg_takes_its_draw_in_whole_periods_rounded_up(monkeypatch: pytest.MonkeyPatch) -> None:

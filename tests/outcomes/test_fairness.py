@@ -133,16 +133,16 @@ class ExchangedStream:
     def __init__(self, exchange: Exchange, generator: Generator, purpose: Purpose) -> None:
         self._exchange, self._generator, self._purpose = exchange, generator, purpose
 
-    def exponential(self, mean: float) -> float:
-        return self._generator.exponential(mean)
+    def exponential(self, mean: float, size: int) -> Values:
+        return self._generator.exponential(mean, size)
 
-    def random(self) -> float:
-        return self._generator.random()
+    def random(self, size: int) -> Values:
+        return self._generator.random(size)
 
-    def uniform(self, low: float, high: float) -> float:
-        drawn = self._generator.uniform(low, high)
-        if self._purpose == Purpose.WALL:  # a heading
-            return self._exchange.heading(drawn)
+    def uniform(self, low: float, high: float, size: int) -> Values:
+        drawn = self._generator.uniform(low, high, size)
+        if self._purpose == Purpose.WALL:  # headings
+            return np.array([self._exchange.heading(heading) for heading in drawn])
         assert self._purpose == Purpose.WANDER
         return -drawn if self._exchange.is_reflection else drawn
 
@@ -156,13 +156,12 @@ def exchange_draws(model: GameModel, exchange: Exchange, monkeypatch: pytest.Mon
 
     monkeypatch.setattr("kswarms.agents.streams.stream", exchanged_stream)
     if exchange.is_reflection:
-        choose = Krembot._vacant_direction
-
-        def choose_mirrored(robot: Krembot, vacant: int) -> float:
-            mirrored = sum(1 << (-sensor % 8) for sensor in range(8) if vacant >> sensor & 1)
-            return -choose(robot, mirrored)
-
-        monkeypatch.setattr(Krembot, "_vacant_direction", choose_mirrored)
+        for robot in model.robots:
+            mirrored = [
+                robot._flights[sum(1 << (-sensor % 8) for sensor in range(8) if vacant >> sensor & 1)]
+                for vacant in range(256)
+            ]
+            robot._flights = [[(periods, -rate) for periods, rate in turns] for turns in mirrored]
 
 
 def put_twins(model: GameModel, original: GameModel, exchange: Exchange) -> None:
@@ -257,11 +256,12 @@ def test_an_exchanged_game_has_the_exchanged_outcome(
 
 
 def test_an_effect_of_the_order_on_a_game_is_detected(monkeypatch: pytest.MonkeyPatch) -> None:
-    choose = Krembot._vacant_direction
+    meet = Krembot.meet
 
-    def choose_unfairly(robot: Krembot, vacant: int) -> float:
-        return choose(robot, vacant) + 1e-3 * (robot.index == 3)
+    def meet_unfairly(robot: Krembot, *arguments: Any) -> None:
+        meet(robot, *arguments)
+        robot._turn_rate[robot.index] += 1e-3 * (robot.index == 3 and robot._turn_rate[robot.index] != 0)
 
-    monkeypatch.setattr(Krembot, "_vacant_direction", choose_unfairly)
+    monkeypatch.setattr(Krembot, "meet", meet_unfairly)
     game = make_game("avoid,attack", 24, 20.0)
     assert min(play_exchanged(game, seed, EXCHANGES[0]) for seed in range(3)) > 1e-6

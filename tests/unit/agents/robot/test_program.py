@@ -186,14 +186,23 @@ def test_walls_are_ignored_in_action_and_on_the_way_home(scene: Scene) -> None:
         assert model.env.now < 70
 
 
-def legs_begun(model: GameModel) -> list[int]:
-    """Return the starts of legs that do not end before the game does."""
-    events: list[Any] = [event for *_, event in model.env._queue]
-    ends = [(time, event) for (time, *_), event in zip(model.env._queue, events, strict=True)]
-    return sorted(int(time - event._delay) for time, event in ends if event.value == "leg")
+@pytest.fixture
+def legs(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Record the starts of legs (periods)."""
+    starts: list[int] = []
+    begin = Krembot.begin_leg
+
+    def record_leg(robot: Krembot) -> None:
+        starts.append(int(robot._env.now))
+        begin(robot)
+
+    monkeypatch.setattr(Krembot, "begin_leg", record_leg)
+    return starts
 
 
-def test_a_new_leg_begins_after_every_turn(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_new_leg_begins_after_every_turn(
+    scene: Scene, legs: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
     turns = []
     begin = Krembot.begin_wall_turn
 
@@ -206,19 +215,19 @@ def test_a_new_leg_begins_after_every_turn(scene: Scene, monkeypatch: pytest.Mon
     model = scene([(0.0, 0.0, 0.3)], changes={"leg_mean": 1e6, "station_radius": 0.01}, duration=300.0)
     model.env.run(until=2999)
     assert len(turns) > 10
-    for turn, leg in zip(turns, legs_begun(model)[1:], strict=False):
+    for turn, leg in zip(turns, legs[1:], strict=False):
         assert turn < leg <= turn + math.ceil(math.pi / STEP)
-    assert len(turns) <= len(legs_begun(model)) <= len(turns) + 1
+    assert len(turns) <= len(legs) <= len(turns) + 1
 
 
-def test_a_new_leg_begins_after_an_action(scene: Scene) -> None:
+def test_a_new_leg_begins_after_an_action(scene: Scene, legs: list[int]) -> None:
     model = scene([(0.0, 0.0, 0.0)], [(0.25, 0.0, 0.0)], changes={"leg_mean": 1e6})
     model.env.run(until=1)
-    assert legs_begun(model) == [0]  # the leg of robot 1
+    assert legs == [0]  # the leg of robot 1
     while model.robots[0].state == "A":
         model.env.run(until=model.env.now + 1)
     action = model.robots[0].t_a[1]
-    assert legs_begun(model) == [0, action]
+    assert legs == [0, action]
 
 
 def test_the_nearest_robot_gets_the_last_puck(scene: Scene) -> None:
