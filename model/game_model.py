@@ -8,20 +8,23 @@ see the world after the previous period.
 
 import math
 from collections.abc import Collection
-from typing import Any
+from typing import Any, Final
 
 from simpy.core import StopSimulation
 from simpy.events import Event
 
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.robot.krembot import Krembot
-from kswarms.model.clock import AFTER_TIMEOUTS, BEFORE_TIMEOUTS, Instant
+from kswarms.model.clock import AFTER_TIMEOUTS, BEFORE_TIMEOUTS, Instant, rare_garbage_collection
 from kswarms.model.description.game import Game
 from kswarms.model.game_state import GameState
 from kswarms.model.kernel.arrays import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE
 from kswarms.model.kernel.kernel import Kernel
 from kswarms.model.mesa_base import Rng, hide_seed
 from kswarms.model.recorder import Recorder, Table, parse_record, policy_rows, result_rows
+
+_OBJECTS_IN_USE: Final = 5
+"""Upper bound of the objects per robot that come and go during a game, such as events."""
 
 
 class GameModel(GameState):
@@ -86,9 +89,7 @@ class GameModel(GameState):
         """Play one sampling period, or to the end of the game, which stops the model."""
         if self.ended:  # the user ran the clock
             return
-        until = self._next_sample()
-        self.env.run(until=until)
-        self._check_clock(until)
+        self._run_clock(self._next_sample())
 
     def play(self) -> None:
         """Play to the end of the game, or until the model is stopped.
@@ -97,8 +98,7 @@ class GameModel(GameState):
         """
         in_steps = self.recorder.samples(self.datacollector) or type(self).step is not GameModel.step
         if self.running and not self.ended and not in_steps:
-            self.env.run()
-            self._check_clock()
+            self._run_clock()
         while self.running:
             self.step()
 
@@ -115,9 +115,7 @@ class GameModel(GameState):
         while self.running and not self.ended and self.controller.seconds(self._next_sample()) <= end_time:
             self.step()
         if self.running and not self.ended and self.time < end_time:
-            end = self.controller.periods(end_time)
-            self.env.run(until=end)
-            self._check_clock(end)
+            self._run_clock(self.controller.periods(end_time))
 
     def run_for(self, duration: float) -> None:
         """Play for a duration (s), as `run_until` does."""
@@ -161,8 +159,10 @@ class GameModel(GameState):
         self._sampled_end = bool(self.ended)
         self.recorder.sample(self.datacollector)
 
-    def _check_clock(self, until: int | None = None) -> None:
-        """Raise a RuntimeError unless the clock ran to period `until` or to the end of the game."""
+    def _run_clock(self, until: int | None = None) -> None:
+        """Run the clock to period `until` or to the end of the game."""
+        with rare_garbage_collection(_OBJECTS_IN_USE * len(self.robots)):
+            self.env.run(until=until)
         if not self.ended and self.now != until:  # a user-defined policy raised SimPy's StopSimulation
             raise RuntimeError(f"the clock was stopped at {self.time} s, before the end of the game")
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from typing import cast
+from typing import Final, cast
 
 import mesa
 import numpy as np
@@ -13,9 +13,13 @@ from kswarms.agents.actions import TOWARDS, Action
 from kswarms.agents.common.errors import InputError, require_type
 from kswarms.agents.robot.conflict import Conflict
 from kswarms.agents.robot.krembot import Krembot
+from kswarms.model.clock import rare_garbage_collection
 from kswarms.model.description.game import Game
 from kswarms.model.mesa_base import MesaModel, Rng
 from kswarms.model.population import controller_constants, make_robots, place_robots
+
+_OBJECTS_OF_ROBOT: Final = 100
+"""Upper bound of the objects that a new robot consists of."""
 
 
 class GameState(MesaModel):
@@ -79,7 +83,8 @@ class GameState(MesaModel):
         self._robot_space, self.states = place_robots(game, self.arena, self.seed, self.random)
         self.space: ContinuousSpace = self._robot_space
         self._is_complete = False
-        self._set_robots(make_robots(self, game, self.seed))
+        with rare_garbage_collection(_OBJECTS_OF_ROBOT * game.size):
+            self._set_robots(make_robots(self, game, self.seed))
         self._is_complete = True
         self._swarm_of = [robot.swarm for robot in self.robots]
         self._reset_scores()
