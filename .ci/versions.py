@@ -48,7 +48,7 @@ def check(name: str, python: str, options: list[str], tests: list[str]) -> bool:
     started = time.monotonic()
     environment = ROOT / ".versions" / name
     own = environment / "bin" / "python"
-    quiet = ["--quiet", "--disable-pip-version-check", "--no-input"]
+    quiet = ["--quiet", "--disable-pip-version-check", "--no-input", "--no-compile"]
     commands = [
         [python, "-m", "venv", "--clear", environment],
         [own, "-m", "pip", "install", *quiet, *options, "-e", ".[pytest]"],

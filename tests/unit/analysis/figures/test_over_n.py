@@ -183,6 +183,7 @@ def test_an_unknown_swarm_is_an_error() -> None:
         sud_over_n(runs_of("fig-6.15", swarms=(1,)), "fig-6.15")
 
 
+@pytest.mark.slow
 def test_write_figures_writes_each_scenario_with_runs_and_keeps_settings(tmp_path: Path) -> None:
     settings = dict(mpl.rcParams)
     runs = pd.concat([runs_of("fig-6.1a"), runs_of("fig-6.3"), runs_of("fig-7.10"), runs_of("fig-7.12")])

@@ -107,6 +107,7 @@ def test_a_correlation_within_games_is_not_a_correlation_of_the_means() -> None:
     assert abs(found["robots"]) < 0.9  # the means are noise
 
 
+@pytest.mark.slow
 def test_intervals_of_independent_quantities_contain_0() -> None:
     """Rewards are independent of contributions: about 5 % of the 80 intervals miss 0."""
     missed = {"robots": 0, "games": 0}
