@@ -12,6 +12,8 @@
 # S2 *attacks*: it fights robots of S1 and flees from its own.
 
 # %%
+import math
+
 import matplotlib.pyplot as plt
 import pandas as pd
 import seaborn as sns
@@ -47,10 +49,10 @@ def draw_arena(model, axes):
         axes.add_patch(plt.Circle((x, y), parameters.base_radius, color=colour, alpha=0.3))
     for robot in model.robots:
         x, y = robot.position
-        row = model.states.robots[robot.index]
         radius = model.game.body.radius
         axes.add_patch(plt.Circle((x, y), radius, color=COLOURS[robot.swarm], alpha=0.9))
-        axes.plot([x, x + radius * row["forward_x"]], [y, y + radius * row["forward_y"]], color="white")
+        ahead_x, ahead_y = x + radius * math.cos(robot.heading), y + radius * math.sin(robot.heading)
+        axes.plot([x, ahead_x], [y, ahead_y], color="white")
         if robot.carrying:
             axes.plot(x, y, "o", color="black")
     axes.set(xlim=(-arena.half, arena.half), ylim=(-arena.half, arena.half), aspect="equal")
