@@ -62,7 +62,7 @@ class Reward(FrozenModel, ABC):
         """
 
 
-    def weights(self, direction: int, inter: bool, opponent: int) -> Weights | None:
+    def linear_weights(self, direction: int, inter: bool, opponent: int) -> Weights | None:
         """Return the weights of T(p) and, for n' from 0 to 8, of T(a), if R is their sum; else None.
 
         They save a call of `of` for each conflict. A subclass that has its own `of` inherits no weights.
@@ -86,7 +86,7 @@ class WLU(Reward):
         program = program_weight_of_equals(b)
         return estimated_wlu(program, t_a, t_p, n_active, sigma(inter, direction), delta)
 
-    def weights(self, direction: int, inter: bool, opponent: int) -> Weights | None:
+    def linear_weights(self, direction: int, inter: bool, opponent: int) -> Weights | None:
         """Return the weights of T(p) and, for each n', of T(a)."""
         if type(self).of is not WLU.of:
             return None

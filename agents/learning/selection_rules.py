@@ -35,7 +35,7 @@ class Rule(FrozenModel, ABC):
             return untried[_random_index(len(untried), rng)]
         return self.prefer(bandit, rng)
 
-    def chooser(self) -> Callable[[Bandit, Generator], int]:
+    def fast_choose(self) -> Callable[[Bandit, Generator], int]:
         """Return `choose`, or a faster function that returns the same."""
         return self.choose
 
@@ -69,7 +69,7 @@ class UCB(Rule):
         """Return the arm with the greatest bound, ties broken at random."""
         return _argmax(self.bounds(bandit), rng)
 
-    def chooser(self) -> Callable[[Bandit, Generator], int]:
+    def fast_choose(self) -> Callable[[Bandit, Generator], int]:
         """Return a function without access to fields, which is slow, unless a subclass chooses otherwise."""
         kind = type(self)
         if (kind.choose, kind.prefer, kind.bounds) != (UCB.choose, UCB.prefer, UCB.bounds):

@@ -88,10 +88,10 @@ class Learner:
             if opponent - 1 not in self.bandits:
                 raise InputError("reward", reward, f"names swarm {opponent}, which is not learned about")
         self.learning = True
-        self._choose = self.rule.chooser()
+        self._choose = self.rule.fast_choose()
         self._weights = {
             opponent: [
-                self.reward.weights(action.direction, opponent != self.swarm, opponent + 1)
+                self.reward.linear_weights(action.direction, opponent != self.swarm, opponent + 1)
                 for action in self.actions
             ]
             for opponent in self.bandits

@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 
-from kswarms.agents.streams import ENVIRONMENT, Purpose, stream
+from kswarms.agents.streams import ENVIRONMENT, Purpose, Streams, stream
 
 
 def first_draws(seed: int, robot: int, purpose: Purpose) -> tuple[float, ...]:
@@ -35,3 +35,11 @@ def test_neighbouring_streams_are_not_correlated() -> None:
 def test_the_value_of_a_purpose_never_changes() -> None:
     names = ["POSITION", "HEADING", "LEG", "WANDER", "WALL", "VACANT", "STATIONS", "EXPLORE", "POLICY"]
     assert [Purpose[name] for name in names] == list(range(9))
+
+
+def test_draws_in_blocks_are_those_of_single_draws() -> None:
+    calls = {"random": (), "exponential": (5.0,), "uniform": (-3.0, 1.0)}
+    for method, arguments in calls.items():
+        draws = Streams(4, 2).draws(Purpose.VACANT, method, *arguments)
+        single = getattr(stream(4, 2, Purpose.VACANT), method)
+        assert list(itertools.islice(draws, 300)) == [single(*arguments) for _ in range(300)]

@@ -141,3 +141,27 @@ def test_values_out_of_range_for_one_opponent_are_refused(field: str, value: obj
     assert caught.value.field.startswith(field)
     assert repr(value) in str(caught.value)
     assert allowed in caught.value.allowed
+
+
+@given(SECONDS, SECONDS, ACTIVE, st.sampled_from(CASES), st.integers(1, 3))
+def test_the_weights_give_the_same_reward(
+    t_a: float, t_p: float, n_active: int, case: tuple[bool, int], opponent: int
+) -> None:
+    inter, direction = case
+    reward = WLU(delta={1: 0.3}, b={2: 0.7})
+    weights = reward.linear_weights(direction, inter, opponent)
+    assert weights is not None
+    expected = reward.of(t_a, t_p, n_active, direction, inter, opponent)
+    assert weights[0] * t_p + weights[1][n_active] * t_a == expected
+
+
+def test_a_subclass_with_its_own_reward_has_no_weights() -> None:
+    class Doubled(WLU):
+        def of(
+            self, t_a: float, t_p: float, n_active: int, direction: int, inter: bool, opponent: int
+        ) -> float:
+            return 2.0 * super().of(t_a, t_p, n_active, direction, inter, opponent)
+
+    assert Doubled().linear_weights(TOWARDS, True, 1) is None
+    assert WLU().linear_weights(TOWARDS, True, 1) is not None
+    assert IndividualUtility().linear_weights(TOWARDS, True, 1) is None

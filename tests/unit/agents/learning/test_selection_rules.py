@@ -230,3 +230,28 @@ def test_values_out_of_range_are_refused(argument: tuple[type[Rule], str], value
         with pytest.raises(InputError, match="must be") as caught:
             rule(**{field: value})
         assert (caught.value.field, repr(caught.value.value)) == (field, repr(value))
+
+
+@pytest.mark.parametrize("rule", [UCB(), UCB(gamma=0.0), DiscountedUCB()], ids=repr)
+def test_the_fast_choice_is_the_choice_of_the_rule(rule: UCB) -> None:
+    fast, values = rule.fast_choose(), np.random.default_rng(2)
+    bandit, rng, twin = Bandit(3), stream(1, 0, Purpose.EXPLORE), stream(1, 0, Purpose.EXPLORE)
+    arms = []
+    for _ in range(200):
+        arms.append(fast(bandit, rng))
+        assert arms[-1] == rule.choose(bandit, twin)
+        bandit.update(arms[-1], float(values.integers(2)), 1.0, rule.factor)  # ties are frequent
+    assert set(arms) == {0, 1, 2}
+    assert rng.random() == twin.random()
+
+
+def test_a_subclass_of_ucb_with_its_own_bounds_is_asked() -> None:
+    class Reversed(UCB):
+        def bounds(self, bandit: Bandit) -> list[float]:
+            return [-bound for bound in super().bounds(bandit)]
+
+    bandit = Bandit(2)
+    bandit.update(0, 3.0, 1.0)
+    bandit.update(1, 1.0, 1.0)
+    rng = stream(0, 0, Purpose.EXPLORE)
+    assert (UCB().fast_choose()(bandit, rng), Reversed().fast_choose()(bandit, rng)) == (0, 1)
