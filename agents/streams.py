@@ -11,7 +11,7 @@ from typing import Final
 from numpy.random import PCG64, Generator, SeedSequence
 
 _FIRST_BLOCK: Final = 4
-_LARGEST_BLOCK: Final = 64
+_LARGEST_BLOCK: Final = 16
 ENVIRONMENT: Final = 2**32 - 1  # in place of a robot's number, for streams of the environment
 
 

@@ -115,14 +115,14 @@ class GameState(MesaModel):
         t_a = [0] * len(self.members)
         t_p = 0
         for robot in self.players(swarm):
-            own_t_a, own_t_p = robot.times()
-            t_a = [a + b for a, b in zip(t_a, own_t_a, strict=True)]
-            t_p += own_t_p
+            t_p += robot.add_times(t_a)
         return t_a, t_p
 
     def players(self, swarm: int) -> list[Krembot]:
         """Return the robots of a swarm in this phase, including those removed in it, by number."""
         gone = [robot for robot in self.removed if robot.swarm == swarm]
+        if not gone:
+            return self.members[swarm].copy()
         return sorted(self.members[swarm] + gone, key=lambda robot: robot.number)
 
     def swarm_of(self, number: int) -> int:
@@ -137,7 +137,7 @@ class GameState(MesaModel):
         InputError
             If it is not a robot in this game.
         """
-        if robot not in self.robots:
+        if not isinstance(robot, Krembot) or robot.model is not self or not robot.in_game:
             raise InputError("robot", robot, "must be a robot in this game")
         self._take_out([robot])
 

@@ -6,6 +6,7 @@ from functools import partial
 from os import PathLike
 from typing import Any, Final
 
+import numpy as np
 from mesa import DataCollector
 
 from kswarms.agents.actions import TOWARDS
@@ -14,6 +15,7 @@ from kswarms.agents.common.errors import InputError, require_integer, require_ty
 from kswarms.agents.common.input_files import to_path
 from kswarms.agents.policies.saved import best_actions, save_learned, snapshot_of
 from kswarms.agents.robot.krembot import Krembot
+from kswarms.agents.robot.state import ACTION
 from kswarms.agents.theory.swarms import swarm_utility_difference
 from kswarms.agents.theory.times import share_of_time
 from kswarms.model.game_state import GameState
@@ -76,7 +78,7 @@ class Recorder:
         self._record = record
         self._row: dict[str, Any] = {}
         self._read_names: set[str] = set()
-        self._trajectory: list[list[tuple[Any, ...]]] = []
+        self._trajectory: list[dict[str, Any]] = []  # columns of each sample, arrays
         self.sample_times: list[float] = []
         row = _sample_row(state) if "model" in record else {}
         self.collector = DataCollector(
@@ -106,11 +108,7 @@ class Recorder:
         del self.sample_times[step:], self._trajectory[step:]
         self.sample_times.append(state.time)
         if "trajectory" in self._record:
-            rows = [
-                (state.time, robot.number, *(value_of(robot) for value_of in _OF_ROBOT.values()))
-                for robot in state.robots
-            ]
-            self._trajectory.append(rows)
+            self._trajectory.append(_places(state))
         _make_room(collector, step)
         collector.collect(state)
         label_samples(collector, self.sample_times)
@@ -136,16 +134,22 @@ class Recorder:
         log.clear()
 
     def tables(self) -> dict[str, Table]:
-        """Return the recorded tables by name."""
-        tables: dict[str, Table] = {}
+        """Return the recorded tables by name; columns are lists."""
+        tables = self.records()
+        if "trajectory" in tables:
+            tables["trajectory"] = {name: column.tolist() for name, column in tables["trajectory"].items()}
+        return tables
+
+    def records(self) -> dict[str, Any]:
+        """Return the recorded tables by name. Columns of the trajectory are arrays, others are lists."""
+        tables: dict[str, Any] = {}
         if "conflicts" in self._record:
             tables["conflicts"] = self._conflicts
         if "robots" in self._record:
             tables["robots"] = self._robots()
         if "trajectory" in self._record:
-            rows = list(itertools.chain.from_iterable(self._trajectory))
-            values = dict(zip(("time", "robot", *_OF_ROBOT), _columns(rows, 2 + len(_OF_ROBOT)), strict=True))
-            tables["trajectory"] = {name: values[name] for name in _TRAJECTORY}
+            samples = self._trajectory
+            tables["trajectory"] = {name: np.concatenate([s[name] for s in samples]) for name in _TRAJECTORY}
         return tables
 
     def _robots(self) -> Table:
@@ -157,6 +161,20 @@ class Recorder:
             identity = robot.number, robot.swarm + 1, robot.policy_name
             rows.append((*identity, robot.pucks, *times, snapshot_of(robot.policy)))
         return dict(zip(_ROBOTS, _columns(rows, len(_ROBOTS)), strict=True))
+
+
+def _places(state: GameState) -> dict[str, Any]:
+    """Return the rows of a sample in the trajectory: columns by name, without an object for each robot."""
+    bodies = state.states.bodies
+    return {
+        "time": np.full(len(bodies.x), state.time),
+        "robot": np.array(state.states.numbers),
+        "state": np.where(bodies.phase == ACTION, "A", "P"),
+        "puck": bodies.carrying > 0,
+        "x": bodies.x.copy(),
+        "y": bodies.y.copy(),
+        "heading": bodies.heading.copy(),
+    }
 
 
 def _columns(rows: list[tuple[Any, ...]], width: int) -> list[list[Any]]:

@@ -104,13 +104,18 @@ class TimedAgent(ContinuousSpaceAgent):
 
     def times(self) -> tuple[list[int], int]:
         """Return T(a) by the opponent's swarm and T(p) up to now (periods)."""
-        t_a, t_p = self.t_a.copy(), self.t_p
+        t_a = [0] * len(self.t_a)
+        return t_a, self.add_times(t_a)
+
+    def add_times(self, t_a: list[int]) -> int:
+        """Add T(a) up to now to `t_a`, by the opponent's swarm; return T(p) up to now (periods)."""
+        for swarm, periods in enumerate(self.t_a):
+            t_a[swarm] += periods
         running = 0 if self._is_over else int(self._env.now) - self._since
-        if self._phase[self.index] == ACTION:
-            t_a[self._opponent_swarm] += running
-        else:
-            t_p += running
-        return t_a, t_p
+        if self._phase[self.index] != ACTION:
+            return self.t_p + running
+        t_a[self._opponent_swarm] += running
+        return self.t_p
 
     def close(self, now: int, learn: bool = True) -> None:
         """Count the time up to `now` (periods) and close the open conflict.

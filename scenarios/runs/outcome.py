@@ -30,8 +30,8 @@ class Outcome:
     """A row of ``runs.parquet`` for each swarm, without the columns from ``run`` to ``seed``."""
     policies: list[dict[str, Any]]
     """Rows of ``policies.parquet``, without the same columns; empty if no swarm learns."""
-    records: dict[str, dict[str, list[Any]]]
-    """The columns of each recorded table, by name of the table and of the column."""
+    records: dict[str, dict[str, Any]]
+    """The columns of each recorded table, lists or arrays, by name of the table and of the column."""
     environment: str = field(default_factory=environment)
     """The `environment` of the process that played the run."""
 

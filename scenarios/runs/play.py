@@ -28,7 +28,7 @@ def play(run: Run, record: str = "") -> Outcome:
         If the game fails.
     """
     with finished_game(run, record) as model:
-        return Outcome(model.results(), policy_rows(model), model.tables())
+        return Outcome(model.results(), policy_rows(model), model.recorder.records())
 
 
 @contextmanager

@@ -32,7 +32,7 @@ _TYPES: Final[dict[str, set[type]]] = {
 """Python types of values that fit each kind of column; in a column of text of a grid, any value fits."""
 
 
-def pack(records: Mapping[str, Mapping[str, list[Any]]]) -> dict[str, bytes]:
+def pack(records: Mapping[str, Mapping[str, Any]]) -> dict[str, bytes]:
     """Return the recorded tables of a run as Arrow streams, for the ledger."""
     packed = {}
     for name, columns in records.items():
@@ -40,7 +40,7 @@ def pack(records: Mapping[str, Mapping[str, list[Any]]]) -> dict[str, bytes]:
         sink = pa.BufferOutputStream()
         options = pa.ipc.IpcWriteOptions(compression="zstd")
         with pa.ipc.new_stream(sink, table.schema, options=options) as writer:
-            writer.write_table(table)
+            writer.write_table(table, max_chunksize=_ROWS_PER_GROUP)
         packed[name] = sink.getvalue().to_pybytes()
     return packed
 
