@@ -107,7 +107,7 @@ def _frames(run: Run, instants: list[float], size: int) -> Iterator[Image]:
     from kswarms.scenarios.watch.player import Player
 
     with run_errors(str(run)):
-        player = Player(run.game, run.seed)
+        player = Player(run.game, run.seed, record_conflicts=False)
     painter = ArenaPainter(player.model.arena, run.game.body.radius, size)
     for instant in track(instants, "filming", len(instants)):
         with run_errors(str(run)):

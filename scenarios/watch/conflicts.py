@@ -59,7 +59,7 @@ class ConflictReader:
     """
 
     def __init__(self, model: GameModel) -> None:
-        self._table = model.datacollector.tables["conflicts"]
+        self._table = model.datacollector.tables.get("conflicts", {})
         self._learners = {
             robot.number: robot.policy for robot in model.robots if isinstance(robot.policy, Learner)
         }

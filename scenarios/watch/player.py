@@ -55,18 +55,20 @@ class Player:
     """Plays a game step by step. Its methods are thread-safe.
 
     `model` is the running game; `seek` replaces it when it rewinds. `conflicts` are the latest conflicts, at
-    most `MAX_CONFLICTS`, in the order in which they ended.
+    most `MAX_CONFLICTS`, in the order in which they ended. Without `record_conflicts` there are none,
+    which is faster in large games.
     """
 
-    def __init__(self, game: Game, seed: int) -> None:
+    def __init__(self, game: Game, seed: int, record_conflicts: bool = True) -> None:
         self._lock = RLock()
+        self._record = "conflicts" if record_conflicts else ""
         self.game = game
         self.seed = seed
         self._start()
 
     def _start(self) -> None:
         game = self.game.replace(sample_period=self.game.parameters.period)
-        self.model = GameModel(game, seed=self.seed, record="conflicts")
+        self.model = GameModel(game, seed=self.seed, record=self._record)
         self._reader = ConflictReader(self.model)
         self.conflicts: deque[WatchedConflict] = deque(maxlen=MAX_CONFLICTS)
         self._interval = self.model.controller.periods(FIRST_INTERVAL)

@@ -12,6 +12,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Final
 
+import numpy as np
+
 from kswarms.agents.actions import Action
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.description.parameters import parse_parameters
@@ -106,7 +108,9 @@ def digests(games: Iterable[tuple[str, Game, int]]) -> Iterator[tuple[str, dict[
 
 def _digest(columns: dict[str, list[Any]], name: str) -> str:
     kept = {c: values for c, values in columns.items() if c != "policy" or name != "learned file"}
-    return hashlib.sha256(json.dumps(kept, sort_keys=True).encode()).hexdigest()[:16]
+    return hashlib.sha256(json.dumps(kept, sort_keys=True, default=np.ndarray.tolist).encode()).hexdigest()[
+        :16
+    ]
 
 
 def main() -> None:
