@@ -13,9 +13,9 @@ import numpy as np
 from kswarms.agents.common.arrays import Floats, Integers
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.jit import compiled
-from kswarms.agents.streams import Purpose
+from kswarms.agents.streams import Purpose, Words
 from kswarms.model.kernel.arrays import Pairs, make_pairs, make_work
-from kswarms.model.kernel.draws import Words, draw, seed_streams
+from kswarms.model.kernel.draws import draw, seed_streams
 from kswarms.model.kernel.neighbours import cell_of
 from kswarms.model.kernel.relaxation import CLOSE, MAX_PASSES, TOLERANCE, relax_close
 

@@ -11,7 +11,7 @@ from kswarms.agents.robot.controller import Controller
 from kswarms.agents.robot.host import Host
 from kswarms.agents.robot.krembot import Krembot
 from kswarms.agents.robot.state import RobotStates
-from kswarms.agents.streams import Streams
+from kswarms.agents.streams import Seeds, Streams
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game
 from kswarms.model.mesa_base import RobotSpace
@@ -56,6 +56,7 @@ def make_robots(model: Host, game: Game, seed: int) -> list[Krembot]:
     step = game.parameters.period * game.body.top_speed
     actions, swarms = model.actions, len(game.swarms)
     robots: list[Krembot] = []
+    seeds = Seeds(seed, game.size)
     for k, swarm in enumerate(game.swarms):
         specs = parse_policies(swarm.policy)
         for spec in specs:
@@ -64,7 +65,7 @@ def make_robots(model: Host, game: Game, seed: int) -> list[Krembot]:
         factories = {spec: spec.factory(actions) for spec in specs}
         for place, spec in enumerate(deal(swarm.policy, swarm.size)):
             number = len(robots)
-            streams = Streams(seed, number)
+            streams = Streams(seed, number, seeds)
             robot = Krembot(
                 model,
                 number,

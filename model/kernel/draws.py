@@ -1,29 +1,15 @@
 """Random numbers of all robots at once: the first draws of the streams of one purpose. Compiled.
 
-They equal those of `kswarms.agents.streams.stream`, whose generators take 13 µs each to create. The seeding
-is that of `numpy.random.SeedSequence`, the generator is PCG64 (O'Neill 2014; XSL RR 128/64).
+They equal those of `kswarms.agents.streams.stream`, whose generators take 13 µs each to create. The generator
+is PCG64 (O'Neill 2014; XSL RR 128/64).
 """
 
 from typing import Final
 
 import numpy as np
-from numpy.random import SeedSequence
-from numpy.typing import NDArray
 
 from kswarms.agents.common.jit import compiled
-from kswarms.agents.streams import Purpose
-
-Words = NDArray[np.uint64]
-
-_POOL: Final = 4
-"""Words in the pool of a `SeedSequence`."""
-_INIT_A: Final = 0x43B0D7E5
-_MULTIPLY_A: Final = 0x931E8875
-_INIT_B: Final = 0x8B51F9DD
-_MULTIPLY_B: Final = 0x58F38DED
-_MIX_LEFT: Final = np.uint32(0xCA01F9DD)
-_MIX_RIGHT: Final = np.uint32(0x4973F715)
-_SHIFT: Final = np.uint32(16)
+from kswarms.agents.streams import Purpose, Words, seed_words
 
 _MULTIPLIER_HIGH: Final = np.uint64(0x2360ED051FC65DA4)
 _MULTIPLIER_LOW: Final = np.uint64(0x4385DF649FCCF645)
@@ -35,28 +21,9 @@ _TO_UNIT: Final = 2.0**-53
 
 def seed_streams(seed: int, robots: int, purpose: Purpose) -> Words:
     """Return the states of the streams of robots 0 … `robots` − 1, uint64, shape (robots, 4), for `draw`."""
-    numbers = np.arange(robots, dtype=np.uint32)
-    pool = [np.full(robots, word, dtype=np.uint32) for word in SeedSequence(seed).pool]
-    extra = max(0, (seed.bit_length() + 31) // 32 - _POOL)
-    constant = _INIT_A * pow(_MULTIPLY_A, _POOL * (_POOL + extra), 2**32)
-    for words in (numbers, np.full(robots, int(purpose), dtype=np.uint32)):  # the spawn key
-        for k in range(_POOL):
-            mixed, constant = _hash(words, constant, _MULTIPLY_A)
-            pool[k] = _MIX_LEFT * pool[k] - _MIX_RIGHT * mixed
-            pool[k] ^= pool[k] >> _SHIFT
-    constant = _INIT_B
-    streams = np.zeros((robots, 4), dtype=np.uint64)
-    for k in range(2 * _POOL):
-        words, constant = _hash(pool[k % _POOL], constant, _MULTIPLY_B)
-        streams[:, k // 2] |= words.astype(np.uint64) << np.uint64(32 * (k % 2))
+    streams = seed_words(seed, robots, purpose)
     _start(streams)
     return streams
-
-
-def _hash(words: NDArray[np.uint32], constant: int, multiplier: int) -> tuple[NDArray[np.uint32], int]:
-    following = constant * multiplier % 2**32
-    mixed = (words ^ np.uint32(constant % 2**32)) * np.uint32(following)
-    return mixed ^ (mixed >> _SHIFT), following
 
 
 @compiled

@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 
-from kswarms.agents.streams import ENVIRONMENT, Purpose, Streams, stream
+from kswarms.agents.streams import ENVIRONMENT, Purpose, Seeds, Streams, stream
 
 
 def first_draws(seed: int, robot: int, purpose: Purpose) -> tuple[float, ...]:
@@ -43,3 +43,14 @@ def test_draws_in_blocks_are_those_of_single_draws() -> None:
         draws = Streams(4, 2).draws(Purpose.VACANT, method, *arguments)
         single = getattr(stream(4, 2, Purpose.VACANT), method)
         assert list(itertools.islice(draws, 300)) == [single(*arguments) for _ in range(300)]
+
+
+def test_streams_of_a_game_equal_single_streams() -> None:
+    for seed in (0, 7, 2**40, 2**200 + 1):
+        seeds = Seeds(seed, 3)
+        for robot, purpose in itertools.product(range(3), Purpose):
+            fast, slow = Streams(seed, robot, seeds).generator(purpose), stream(seed, robot, purpose)
+            assert fast.random(3).tolist() == slow.random(3).tolist()
+            assert fast.spawn(2)[1].random() == slow.spawn(2)[1].random()
+            fast_seeds, slow_seeds = (each.bit_generator.seed_seq for each in (fast, slow))
+            assert fast_seeds.generate_state(3).tolist() == slow_seeds.generate_state(3).tolist()
