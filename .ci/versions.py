@@ -19,7 +19,8 @@ ROOT = Path(__file__).parents[1]
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 THIS = f"{sys.version_info.major}.{sys.version_info.minor}"
 SHORT = [
-    "tests/unit", "tests/baseline", "tests/integration/test_batch_run.py",
+    "tests/unit/agents", "tests/unit/model", "tests/unit/analysis/measures", "tests/unit/analysis/results",
+    "tests/unit/analysis/statistics", "tests/unit/analysis/tables", "tests/integration/test_batch_run.py",
     "tests/integration/test_batch_run_subclasses.py", "tests/integration/test_determinism.py",
     "tests/integration/test_mesa_interface.py", "tests/integration/test_mesa_versions.py",
 ]  # fmt: skip
