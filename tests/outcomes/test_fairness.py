@@ -7,6 +7,7 @@ under a symmetry of the arena, with the robots and their random draws exchanged.
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from kswarms.agents.robot.krembot import Krembot
-from kswarms.agents.streams import Purpose, stream
+from kswarms.agents.streams import Purpose, Streams, stream
 from kswarms.model.description.game import Game, Swarm
 from kswarms.model.description.parameters import PRESETS
 from kswarms.model.game_model import GameModel
@@ -151,10 +152,12 @@ def exchange_draws(model: GameModel, exchange: Exchange, monkeypatch: pytest.Mon
     """Give all robots the random streams of their twins."""
     n = model.game.size
 
-    def exchanged_stream(seed: int, robot: int, purpose: Purpose) -> ExchangedStream:
-        return ExchangedStream(exchange, stream(seed, exchange.twins(robot, n), purpose), purpose)
+    @cache
+    def exchanged_stream(streams: Streams, purpose: Purpose) -> ExchangedStream:
+        twin = exchange.twins(streams.robot, n)
+        return ExchangedStream(exchange, stream(streams.seed, twin, purpose), purpose)
 
-    monkeypatch.setattr("kswarms.agents.streams.stream", exchanged_stream)
+    monkeypatch.setattr(Streams, "generator", lambda self, purpose: exchanged_stream(self, purpose))
     if exchange.is_reflection:
         for robot in model.robots:
             mirrored = [
