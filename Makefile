@@ -13,7 +13,7 @@ GAMES := tests/outcomes tests/baseline
 
 .DEFAULT_GOAL := help
 .NOTPARALLEL:  # two installations into one environment would collide
-.PHONY: help demo explore test coverage lint types versions docs bench profile peers full clean
+.PHONY: help demo explore test lint types versions docs bench profile peers full clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -31,11 +31,9 @@ demo: $(RUN)  ## install, play three scenarios, draw their figures into results/
 explore: $(EXPLORE)  ## open a page to watch, change and inspect games
 	$(BIN)/kswarms explore
 
-test: lint types docs  ## run all checks: lint, types, documentation, tests
-	$(BIN)/python -m pytest -n auto --dist loadfile
-
-coverage: $(TEST)  ## measure the coverage of the tests, which takes longer than the tests alone
+test: lint types docs  ## run all checks: lint, types, documentation, tests with coverage
 	$(BIN)/python -m pytest -n auto --dist loadfile --cov --cov-report=term-missing:skip-covered $(GAMES:%=--ignore=%)
+	$(BIN)/python -m pytest -n auto --dist loadfile $(GAMES)
 
 lint: $(TEST)  ## check style (ruff) and the direction of imports (import-linter)
 	$(BIN)/ruff check .

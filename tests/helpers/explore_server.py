@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-PATIENCE = 100.0
+PATIENCE = 40.0
 """Timeout of every wait (s), generous for a busy machine."""
 
 

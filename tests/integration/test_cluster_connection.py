@@ -155,7 +155,7 @@ def test_the_address_of_a_worker_is_refused(plain: LocalCluster) -> None:
         "ws://127.0.0.1:1",
         "ucx://127.0.0.1:1",
         "inproc://127.0.0.1/1/1",
-        "unix:///tmp/scheduler",
+        "unix:///scheduler",
         "http://127.0.0.1:8786",
         f"tcp://{'x' * 5000}:1",
     ],

@@ -19,7 +19,7 @@ from tests.helpers.tiny_study import PLAIN_RUN, TINY
 
 NAMES = (
     "../../escaped",
-    "/tmp/escaped",
+    "/escaped",
     ".escaped",
     "=HYPERLINK(1)",
     "@x;=1+1",
