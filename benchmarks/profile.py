@@ -40,7 +40,7 @@ def phase_of(stack: Sequence[tuple[str, str]]) -> str:
         return "set-up"
     if module.startswith("simpy"):
         inside = any(name.startswith("kswarms.agents") for name, _ in stack)
-        return "SimPy: scheduling of timeouts" if inside else "SimPy: loop"
+        return "SimPy: calls by robots" if inside else "SimPy: loop"
     if any(name.startswith(("kswarms.agents.learning", "kswarms.agents.policies")) for name, _ in stack):
         return "learning and policies"
     if "_decide" in functions:

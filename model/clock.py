@@ -5,8 +5,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Final
 
-import simpy
 from simpy.events import Event
+
+from kswarms.agents.robot.clock import Clock
 
 BEFORE_TIMEOUTS: Final = 0
 """SimPy priority of samples and of the end of the game; timeouts have priority 1."""
@@ -17,8 +18,9 @@ AFTER_TIMEOUTS: Final = 2
 class Instant(Event):
     """Reusable event with an explicit priority, `BEFORE_TIMEOUTS` or `AFTER_TIMEOUTS`."""
 
-    def __init__(self, env: simpy.Environment, priority: int, callback: Callable[[Event], None]) -> None:
+    def __init__(self, env: Clock, priority: int, callback: Callable[[Event], None]) -> None:
         super().__init__(env)
+        self._clock = env
         self._ok = True
         self._value = None
         self._priority = priority
@@ -27,7 +29,8 @@ class Instant(Event):
     def schedule_in(self, delay: int) -> None:
         """Schedule the event `delay` periods from now; it must not be scheduled already."""
         self.callbacks = self._callbacks
-        self.env.schedule(self, self._priority, delay)  # type: ignore[arg-type]  # SimPy's type has only 0 and 1
+        clock = self._clock
+        clock.push((clock.now + delay, self._priority, next(clock.order), self))
 
 
 @contextmanager

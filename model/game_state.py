@@ -6,11 +6,11 @@ from typing import Final, cast
 
 import mesa
 import numpy as np
-import simpy
 from mesa.experimental.continuous_space import ContinuousSpace
 
 from kswarms.agents.actions import TOWARDS, Action
 from kswarms.agents.common.errors import InputError, require_type
+from kswarms.agents.robot.clock import Clock
 from kswarms.agents.robot.conflict import Conflict
 from kswarms.agents.robot.krembot import Krembot
 from kswarms.model.clock import rare_garbage_collection
@@ -27,8 +27,8 @@ class GameState(MesaModel):
 
     Attributes
     ----------
-    env : simpy.Environment
-        The clock; it counts control periods.
+    env : kswarms.agents.robot.clock.Clock
+        The clock, an environment of SimPy; it counts control periods.
     actions : sequence of Action
         The actions of the game, the objects that policies choose from.
     arena : Arena
@@ -65,7 +65,7 @@ class GameState(MesaModel):
         require_type("game", game, Game, "must be a Game")
         super().__init__(seed, rng)
         self.game = game
-        self.env = simpy.Environment()
+        self.env = Clock()
         self.arena = game.arena(self.seed)
         self.controller = controller_constants(game)
         periods = self.controller.periods

@@ -35,14 +35,16 @@ class Bandit:
         self.count = [0.0] * arms
         self.choices = 0
 
-    def update(self, arm: int, reward: float, time: float, discount: float = 1.0) -> None:
-        """Add a conflict: its R and T(a) + T(p) (s); `discount` is λ of discounted UCB."""
+    def update(self, arm: int, reward: float, time: float, discount: float = 1.0) -> float:
+        """Add a conflict: its R and T(a) + T(p) (s); `discount` is λ of discounted UCB. Return Q(a)."""
+        rewards, times = self.reward, self.time
         if discount != 1.0:
-            for sums in (self.reward, self.time, self.count):
+            for sums in (rewards, times, self.count):
                 sums[:] = [discount * value for value in sums]
-        self.reward[arm] += reward
-        self.time[arm] += time
+        rewards[arm] += reward
+        times[arm] += time
         self.count[arm] += 1.0
+        return rewards[arm] / times[arm] if times[arm] > 0.0 else math.nan
 
     def value(self, arm: int) -> float:
         """Return Q(a) = Σ R / Σ (T(a) + T(p)) (Eq. 4.15), NaN if the arm is untried."""

@@ -7,7 +7,6 @@ user-defined. All robots of a policy share one rule object; learned values are i
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from functools import partial
 from typing import Final
 
 from numpy.random import Generator
@@ -70,11 +69,11 @@ class UCB(Rule):
         return _argmax(self.bounds(bandit), rng)
 
     def fast_choose(self) -> Callable[[Bandit, Generator], int]:
-        """Return a function without access to fields, which is slow, unless a subclass chooses otherwise."""
+        """Return a function for two arms, the usual number, unless a subclass chooses otherwise."""
         kind = type(self)
         if (kind.choose, kind.prefer, kind.bounds) != (UCB.choose, UCB.prefer, UCB.bounds):
             return self.choose
-        return partial(_greatest_bound, self.gamma, self.choose)
+        return _choose_of_two(self.gamma, self.choose)
 
 
 class DiscountedUCB(UCB):
@@ -141,24 +140,30 @@ def make_rule(rule: str | Rule) -> Rule:
     return rule if isinstance(rule, Rule) else build("rule", rule, RULES, Rule)
 
 
-def _greatest_bound(
-    gamma: float, choose: Callable[[Bandit, Generator], int], bandit: Bandit, rng: Generator
-) -> int:
-    """Return the arm with the greatest bound of `UCB`; leave untried arms and ties to `choose`."""
-    counts = bandit.count
-    if min(counts) < FORGOTTEN:
+def _choose_of_two(
+    gamma: float, choose: Callable[[Bandit, Generator], int]
+) -> Callable[[Bandit, Generator], int]:
+    """Return `UCB.choose` for two arms, without a loop and access to fields, which are slow.
+
+    Other numbers of arms, untried arms and ties are left to `choose`.
+    """
+    log, sqrt = math.log, math.sqrt
+
+    def fast_choose(bandit: Bandit, rng: Generator) -> int:
+        counts = bandit.count
+        if len(counts) == 2:
+            first, second = counts
+            if first >= FORGOTTEN and second >= FORGOTTEN:
+                scale = gamma * log(first + second)
+                reward, other_reward = bandit.reward
+                time, other_time = bandit.time
+                bound = reward / time + sqrt(scale / first)
+                other_bound = other_reward / other_time + sqrt(scale / second)
+                if bound != other_bound:
+                    return 0 if bound > other_bound else 1
         return choose(bandit, rng)
-    scale, sqrt = gamma * math.log(sum(counts)), math.sqrt
-    arm = best = -1
-    greatest, is_tie = -math.inf, False
-    for reward, time, count in zip(bandit.reward, bandit.time, counts):  # noqa: B905  # same length
-        arm += 1
-        bound = reward / time + sqrt(scale / count)
-        if bound > greatest:
-            best, greatest, is_tie = arm, bound, False
-        elif bound == greatest:
-            is_tie = True
-    return choose(bandit, rng) if is_tie else best
+
+    return fast_choose
 
 
 def _argmax(values: list[float], rng: Generator) -> int:

@@ -137,8 +137,7 @@ class Learner:
             reward = self.reward.of(t_a, t_p, n_active, direction, inter, opponent + 1)
         if not isfinite(reward):
             raise InputError("reward", reward, f"must be finite, also for T(a)={t_a:g}, T(p)={t_p:g}")
-        bandit.update(arm, reward, t_a + t_p, self._factor)
-        return reward, bandit.value(arm)
+        return reward, bandit.update(arm, reward, t_a + t_p, self._factor)
 
     def learned_action(self, opponent: int) -> Action:
         """Return the action with the greatest Q against a swarm; flight if no arm was tried."""

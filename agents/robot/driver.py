@@ -28,7 +28,7 @@ class Driver(TimedAgent):
     """
 
     __slots__ = (
-        "_action_end", "_drive_periods", "_flights", "_opponent", "_stride", "_stride_action",
+        "_action_end", "_flights", "_opponent", "_order", "_push", "_stride", "_stride_action",
         "_stride_program", "_timer", "_turn_rate", "_turn_step",
     )
 
@@ -42,6 +42,8 @@ class Driver(TimedAgent):
         stride_action: float,
     ) -> None:
         super().__init__(model, index, policy, swarms)
+        self._push = model.env.push
+        self._order = model.env.order
         self._opponent = model.states.opponent
         self._stride = model.states.stride
         self._turn_rate = model.states.turn_rate
@@ -50,7 +52,6 @@ class Driver(TimedAgent):
         self._stride_program = stride_program
         self._stride_action = stride_action
         self._timer = Timer(self)
-        self._drive_periods = 0  # duration of the drive of the latest action
         self._action_end = 0  # end of the latest action, unless it is interrupted (periods)
 
     def finish(self, now: int) -> None:
@@ -83,7 +84,7 @@ class Driver(TimedAgent):
         """Call `callbacks` after some periods."""
         timer = self._free_timer()
         timer.callbacks = callbacks
-        self._env.schedule(timer, NORMAL, periods)
+        self._push((int(self._env.now) + periods, NORMAL, next(self._order), timer))
 
     def _free_timer(self) -> "Timer":
         """Cancel the current leg, turn or drive, if there is one, and return a timer that can be set."""
@@ -128,7 +129,7 @@ def _drive_after_turn(timer: Timer) -> None:
     robot._stride[index] = robot._stride_action
     robot._turn_rate[index] = 0.0
     timer.callbacks = END_ACTION
-    timer.env.schedule(timer, NORMAL, robot._drive_periods)
+    robot._push((robot._action_end, NORMAL, next(robot._order), timer))
 
 
 def _end_action(timer: Timer) -> None:

@@ -3,11 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-import simpy
 from mesa import Agent
 from mesa.experimental.continuous_space import ContinuousSpace
 
 from kswarms.agents.actions import Action
+from kswarms.agents.robot.clock import Clock
 from kswarms.agents.robot.conflict import Conflict
 from kswarms.agents.robot.controller import Controller
 from kswarms.agents.robot.state import RobotStates
@@ -16,7 +16,7 @@ from kswarms.agents.robot.state import RobotStates
 class Host(Protocol):
     """The model that a robot belongs to."""
 
-    env: simpy.Environment
+    env: Clock
     space: ContinuousSpace
     states: RobotStates
     controller: Controller

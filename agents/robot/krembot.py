@@ -4,7 +4,6 @@ Every leg, turn, flight and fight is one SimPy event, a `Timer`. At its end, the
 kernel that a decision is due; the robot decides after the next percepts.
 """
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -16,9 +15,9 @@ from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.interface import Policy
 from kswarms.agents.robot.driver import END_ACTION, END_LEG, START_DRIVE, STRAIGHT, Driver, turn_of
 from kswarms.agents.robot.host import Host
-from kswarms.agents.robot.sensing import heads_for, read_sensors, walls_met, wrap
+from kswarms.agents.robot.sensing import read_sensors, turn_from_walls
 from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, HOMING_ERROR, IDLE, LEG, TURN
-from kswarms.agents.streams import Purpose, Streams
+from kswarms.agents.streams import Purpose, Streams, Words
 
 
 class Krembot(Driver):
@@ -26,11 +25,12 @@ class Krembot(Driver):
 
     `number` is its number in the game and `swarm` its swarm, both from 0; `index` is its row in the state
     arrays (removed robots are skipped). In a period it drives `stride_program` in state P and `stride_action`
-    in state A (m). `actions`, if given, are the only allowed choices of a user-defined policy.
+    in state A (m). `escapes` are the streams of all robots for turns at walls. `actions`, if given, are the
+    only allowed choices of a user-defined policy.
     """
 
     __slots__ = (
-        "_action_periods", "_allowed", "_controller", "_generator", "_headings", "_leg_times", "_ties",
+        "_action_periods", "_allowed", "_controller", "_escapes", "_generator", "_legs", "_ties",
         "_timed_actions", "_turns", "number", "policy_name", "pucks", "swarm",
     )
 
@@ -45,6 +45,7 @@ class Krembot(Driver):
         stride_program: float,
         stride_action: float,
         swarms: int,
+        escapes: Words,
         actions: Sequence[Action] | None = None,
     ) -> None:
         super().__init__(model, number, policy, swarms, stride_program, stride_action)
@@ -56,9 +57,9 @@ class Krembot(Driver):
         self._allowed = actions
         self._controller = model.controller
         limit = model.controller.wander_turn
-        self._leg_times = streams.draws(Purpose.LEG, "exponential", model.controller.leg_mean)
+        self._legs = streams.draws(Purpose.LEG, "exponential", model.controller.leg_mean)
         self._turns = streams.draws(Purpose.WANDER, "uniform", -limit, limit)
-        self._headings = streams.draws(Purpose.WALL, "uniform", -math.pi, math.pi)
+        self._escapes = escapes
         self._ties = streams.draws(Purpose.VACANT, "random")
         self._action_periods = model.action_periods
         self._timed_actions = model.timed_actions
@@ -91,7 +92,7 @@ class Krembot(Driver):
     def begin_leg(self) -> None:
         """Wander straight ahead for an exponential duration."""
         self._drive(LEG, self._stride_program)
-        self._set_timer(self._controller.periods(next(self._leg_times)), END_LEG)
+        self._set_timer(self._controller.periods(next(self._legs)), END_LEG)
 
     def begin_wander_turn(self) -> None:
         """Turn in place by a uniform angle."""
@@ -101,14 +102,8 @@ class Krembot(Driver):
         """Turn in place to a heading drawn uniformly from those without a wall ahead."""
         controller = self._controller
         x, y = self._states.positions[self.index].tolist()
-        heading = self.heading
-        arena = controller.half, controller.wall_reach, controller.wall_half_angle
-        met = walls_met(x, y, heading, *arena)
-        while True:
-            target = next(self._headings)
-            if not (heads_for(target, met) if controller.escape_away else walls_met(x, y, target, *arena)):
-                break
-        self._turn(TURN, wrap(target - heading))
+        arena = controller.half, controller.wall_reach, controller.wall_half_angle, controller.escape_away
+        self._turn(TURN, turn_from_walls(self._escapes, self.number, x, y, self.heading, *arena))
 
     def go_home(self, error: float) -> None:
         """Turn towards the own base if the heading is off by `error` (rad), else drive to it."""
@@ -172,13 +167,12 @@ class Krembot(Driver):
         self._action_end = now + turn + drive
         if turn:
             self._stride[index] = 0.0
-            self._drive_periods = drive
             timer.callbacks = START_DRIVE
-            self._env.schedule(timer, NORMAL, turn)
+            self._push((now + turn, NORMAL, next(self._order), timer))
         else:
             self._stride[index] = self._stride_action
             timer.callbacks = END_ACTION
-            self._env.schedule(timer, NORMAL, drive)
+            self._push((now + drive, NORMAL, next(self._order), timer))
 
     def restart(self, now: int) -> None:
         """Begin the measured game: reset pucks, times and conflicts to 0 and stop learning."""

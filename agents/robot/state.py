@@ -29,6 +29,9 @@ class Bodies(NamedTuple):
     opponent: Integers  # opponent of the latest conflict, -1 before the first
 
 
+N_MOTION: Final = Bodies._fields.index("swarm") - 2
+"""Number of float fields besides x and y."""
+
 # Phases. ACTION is state A, all others are state P.
 IDLE: Final = 0  # waiting for a decision at the next percepts
 LEG: Final = 1  # wandering straight ahead
@@ -60,8 +63,11 @@ class RobotStates:
     ----------
     positions : ndarray of float64, shape (n, 2)
         Centres (m). The array is shared with Mesa's space.
+    motion, roles : ndarray, shape (5, n) and (4, n)
+        The float and the integer fields of `Bodies` after `x` and `y`, one in each row. After a removal, only
+        the first columns are in use.
     bodies : Bodies
-        The arrays for the kernel; `x` and `y` are the columns of `positions`.
+        The rows of these arrays; `x` and `y` are the columns of `positions`.
     swarm, phase, carrying, opponent, heading, stride, turn_rate : memoryview, shape (n,)
         Views of the arrays; reading or writing one number is twice as fast as with arrays.
     numbers : list of int
@@ -72,37 +78,31 @@ class RobotStates:
         n = len(swarm)
         self.numbers = list(range(n))
         self.positions = _by_columns(positions)
-        self.bodies = Bodies(
-            x=self.positions[:, 0],
-            y=self.positions[:, 1],
-            heading=headings.astype(np.float64),
-            forward_x=np.cos(headings),
-            forward_y=np.sin(headings),
-            stride=np.zeros(n),
-            turn_rate=np.zeros(n),
-            swarm=swarm.astype(np.int64),
-            phase=np.full(n, IDLE),
-            carrying=np.zeros(n, dtype=np.int64),
-            opponent=np.full(n, -1),
-        )
-        self._view()
+        self.motion = np.zeros((N_MOTION, n))
+        self.roles = np.zeros((len(Bodies._fields) - 2 - N_MOTION, n), dtype=np.int64)
+        self._view(n)
+        bodies = self.bodies
+        bodies.heading[:] = headings
+        bodies.forward_x[:] = np.cos(headings)
+        bodies.forward_y[:] = np.sin(headings)
+        bodies.swarm[:] = swarm
+        bodies.phase[:] = IDLE
+        bodies.opponent[:] = -1
 
     def keep(self, rows: Integers, positions: Floats) -> None:
         """Keep only some rows, ascending, shape (m,); they become rows 0 … m − 1 in the same memory.
 
         `positions` are the centres of these robots (m), shape (m, 2), in contiguous columns.
         """
-        old = self.bodies
-        new_row = np.full(len(old.opponent) + 1, -1)  # the last entry is for opponent −1
+        opponent = self.bodies.opponent
+        new_row = np.full(len(opponent) + 1, -1)  # the last entry is for opponent −1
         new_row[rows] = np.arange(len(rows))
-        old.opponent[:] = new_row[old.opponent]
+        opponent[:] = new_row[opponent]
         self.positions = _by_columns(positions)
-        for array in old[2:]:
-            array[: len(rows)] = array[rows]
-        columns = self.positions[:, 0], self.positions[:, 1]
-        self.bodies = Bodies._make((*columns, *(array[: len(rows)] for array in old[2:])))
+        for block in (self.motion, self.roles):
+            block[:, : len(rows)] = block[:, rows]
         self.numbers = [self.numbers[row] for row in rows]
-        self._view()
+        self._view(len(rows))
 
     def copy_row(self, row: int) -> "RobotStates":
         """Return a copy of the state of one robot."""
@@ -131,8 +131,8 @@ class RobotStates:
             raise InputError("position", place, f"must not overlap robot {self.numbers[nearest]}")
         self.positions[row] = point
 
-    def _view(self) -> None:
-        bodies = self.bodies
+    def _view(self, n: int) -> None:
+        self.bodies = bodies = Bodies(*self.positions.T, *self.motion[:, :n], *self.roles[:, :n])
         self.swarm = bodies.swarm.data
         self.phase = bodies.phase.data
         self.carrying = bodies.carrying.data

@@ -10,7 +10,7 @@ from typing import Final
 from kswarms.agents.common.jit import compiled
 from kswarms.agents.robot.sensing import wrap
 from kswarms.agents.robot.state import Bodies
-from kswarms.model.kernel.arrays import Memory
+from kswarms.model.kernel.arrays import Blocks, Memory, memory_of
 from kswarms.model.kernel.contacts import JAMMED, separate, translate
 from kswarms.model.kernel.neighbours import refresh
 from kswarms.model.kernel.percepts import find_pucks, perceive
@@ -25,13 +25,14 @@ _MAX_REFRESHES: Final = 50
 
 
 @compiled
-def advance(m: Memory, tick: int, until: int) -> tuple[int, int]:
+def advance(blocks: Blocks, tick: int, until: int) -> tuple[int, int]:
     """Advance from control period `tick` to the first decision, but not beyond the start of `until`.
 
-    Return the period reached, which is `until` without events, and the number of events in ``m.events``. If
-    the pick-ups and deposits of period `until` are done, its percepts are done too, but no motion. Raise a
-    ValueError if overlapping bodies cannot be separated.
+    Return the period reached, which is `until` without events, and the number of events in
+    ``blocks.events``. If the pick-ups and deposits of period `until` are done, its percepts are done too, but
+    no motion. Raise a ValueError if overlapping bodies cannot be separated.
     """
+    m = memory_of(blocks)
     stage = m.scalars["stage"]
     while tick < until or stage[0] != PUCKS:
         if stage[0] == PUCKS:

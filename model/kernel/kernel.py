@@ -18,9 +18,9 @@ from kswarms.model.kernel.arrays import (
     MAX_CONTACTS,
     SCALARS,
     STATION,
-    Memory,
-    make_pairs,
-    make_work,
+    Blocks,
+    pair_block,
+    work_blocks,
 )
 from kswarms.model.kernel.neighbours import room_for_pairs
 
@@ -33,7 +33,7 @@ class Kernel:
 
     Attributes
     ----------
-    memory : Memory
+    blocks : Blocks
         Arrays of the compiled code.
     events : ndarray of `kswarms.model.kernel.arrays.EVENT`, shape (n,)
         Decisions due since the last call of `advance`.
@@ -54,31 +54,37 @@ class Kernel:
         stations["supply"] = game.supply or -1
         pair_reach = float(scalars["pair_reach"][0])
         cells = max(1, min(_MAX_CELLS, int(2 * arena.half / pair_reach)))
-        self.memory = Memory(
-            bodies=states.bodies,
+        self.events: Records = np.zeros(n, dtype=EVENT)
+        floats, integers, rows = work_blocks(n)
+        self.blocks = Blocks(
+            x=states.positions[:, 0],
+            y=states.positions[:, 1],
+            motion=states.motion,
+            roles=states.roles,
+            work_floats=floats,
+            work_integers=integers,
+            work_rows=rows,
+            pairs=pair_block(room_for_pairs(n, pair_reach, game.body.radius)),
             scalars=scalars,
             stations=stations,
             bases=arena.bases,
-            work=make_work(n),
             contacts=np.zeros((n, MAX_CONTACTS), dtype=CONTACT),
-            pairs=make_pairs(room_for_pairs(n, pair_reach, game.body.radius)),
             cell_start=np.zeros(cells * cells + 1, dtype=np.int64),
-            events=np.zeros(n, dtype=EVENT),
+            events=self.events,
         )
-        self.events = self.memory.events
         self.fields = [self.events[name].data for name in EVENT.names or ()]
         self.supply: Integers = stations["supply"]
-        advance(self.memory, 0, 0)  # compiles, or loads the cached code; moves nothing
+        advance(self.blocks, 0, 0)  # compiles, or loads the cached code; moves nothing
         # The dispatcher of a compiled function looks up the types of all arguments at each call, which takes
         # longer than the call. They never change in a game, so the machine code is called directly.
         overloads = getattr(advance, "overloads", None)  # None with NUMBA_DISABLE_JIT=1
         function = next(iter(overloads.values())).entry_point if overloads else advance
-        self.advance: Callable[[int, int], tuple[int, int]] = partial(function, self.memory)
+        self.advance: Callable[[int, int], tuple[int, int]] = partial(function, self.blocks)
 
     def resume(self, before: "Kernel") -> None:
         """Continue the period of a kernel with more robots; the last stage with decisions is repeated."""
         self.supply[:] = before.supply
-        self.memory.scalars["stage"] = max(PUCKS, before.memory.scalars["stage"][0] - 1)
+        self.blocks.scalars["stage"] = max(PUCKS, before.blocks.scalars["stage"][0] - 1)
 
 
 def make_scalars(game: Game, arena: Arena) -> Records:

@@ -8,7 +8,7 @@ a growing part of the last pass's move (Nesterov 1983) gives nearly the same res
 import math
 from typing import Final
 
-from kswarms.agents.common.arrays import Floats
+from kswarms.agents.common.arrays import Floats, Integers
 from kswarms.agents.common.jit import compiled
 from kswarms.model.kernel.arrays import Pairs, Work
 from kswarms.model.kernel.neighbours import list_close
@@ -32,6 +32,8 @@ _STUCK: Final = 1000
 """Passes after which the relaxation assumes a straight row between walls, which passes cannot separate."""
 _TURN: Final = 0.01
 """Turn of the pairs of such a row (rad)."""
+_FEW: Final = 100
+"""Up to this number of bodies, all are moved in each pass."""
 _FORGET_AFTER: Final = 4
 _FORGET_EVERY: Final = 8
 """First pass, and period in passes, of removing pairs at rest: most of a jam is resolved early."""
@@ -96,7 +98,10 @@ def relax_close(
         n_overlaps, worst = _measure_overlaps(x, y, radius, work, pairs, n_close)
         if worst <= TOLERANCE:
             break
-        n_moved = _move_bodies(x, y, limit, work, pairs, n_overlaps, n_moved, _momentum(done))
+        if len(x) <= _FEW:
+            _move_all(x, y, limit, work, _momentum(done))
+        else:
+            n_moved = _move_bodies(x, y, limit, work, pairs, n_overlaps, n_moved, _momentum(done))
         done += 1
     return done
 
@@ -201,6 +206,27 @@ def _momentum(done: int) -> float:
     """Return the fraction of the last pass's move that is added after `done` passes."""
     passes = done - _PLAIN_PASSES + 1
     return min(_MAX_MOMENTUM, max(0.0, passes / (passes + _HALF_MOMENTUM)))
+
+
+@compiled
+def _move_all(x: Floats, y: Floats, limit: float, work: Work, momentum: float) -> None:
+    """Do the same as `_move_bodies` in loops over all bodies, which use vector instructions."""
+    _move_along(x, work.move_x, work.shove_x, work.touches, limit, momentum)
+    _move_along(y, work.move_y, work.shove_y, work.touches, limit, momentum)
+    for i in range(len(x)):
+        work.touches[i] = 0
+
+
+@compiled
+def _move_along(
+    place: Floats, move: Floats, shove: Floats, touches: Integers, limit: float, momentum: float
+) -> None:
+    for i in range(len(place)):
+        kept = min(1, touches[i])
+        scale = 2.0 / max(2, touches[i])
+        move[i] = momentum * (kept * move[i]) + scale * shove[i]
+        place[i] = min(limit, max(-limit, place[i] + move[i]))
+        shove[i] = 0.0
 
 
 @compiled

@@ -3,12 +3,14 @@
 import math
 from collections import Counter, defaultdict
 from contextlib import suppress
+from heapq import heappush
 from typing import Any, NamedTuple, cast
 
 import pytest
 from simpy.core import StopSimulation
-from simpy.events import NORMAL, Event
+from simpy.events import Event
 
+from kswarms.agents.robot import clock
 from kswarms.agents.robot.driver import END_ACTION, END_LEG, Timer
 from kswarms.agents.robot.krembot import Krembot
 from kswarms.agents.streams import Purpose, stream
@@ -42,11 +44,11 @@ class Trace:
         self.decided: Counter[str] = Counter()
         for name in ("begin_leg", "begin_wander_turn", "begin_wall_turn", "go_home", "meet"):
             self._count(monkeypatch, name)
-        self.model = GameModel(game, seed=SEED, record=record)
         self._set: list[ClockEvent] = []
-        self._step, self._schedule = self.model.env.step, self.model.env.schedule
+        monkeypatch.setattr(clock, "heappush", self.push)
+        self.model = GameModel(game, seed=SEED, record=record)
+        self._step = self.model.env.step
         monkeypatch.setattr(self.model.env, "step", self.step)
-        monkeypatch.setattr(self.model.env, "schedule", self.schedule)
 
     def _count(self, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
         """Count the decision of a robot: a leg, or a turn if it then turns."""
@@ -66,13 +68,13 @@ class Trace:
         self.events.append(ClockEvent(int(time), int(priority), is_motion, what=type(event).__name__))
         self._step()
 
-    def schedule(self, event: Event, priority: Any = NORMAL, delay: int = 0) -> None:
+    def push(self, queue: list[Any], entry: tuple[int, int, int, Event]) -> None:
         """Record the event of a robot when it is scheduled, because an interruption makes it anonymous."""
-        now = self.model.now
+        time, priority, _, event = entry
         if isinstance(event, Timer):
-            robot = event.robot.index
-            self._set.append(ClockEvent(now + delay, int(priority), False, robot, kind_of(event, delay), now))
-        self._schedule(event, priority, delay)
+            robot, now = event.robot.index, self.model.now
+            self._set.append(ClockEvent(time, int(priority), False, robot, kind_of(event, time - now), now))
+        heappush(queue, entry)
 
     def timeouts(self) -> list[ClockEvent]:
         """Return all events of robots, including those pending at the end of the game."""

@@ -192,7 +192,7 @@ def test_bodies_that_cannot_be_separated_are_an_error() -> None:
     side = np.linspace(R - 1, 1 - R, 10)
     scene = make_scene(game_of(100), np.array([(x, y) for x in side for y in side]), 0.0, STRIDE)
     kernel = scene.kernel()
-    kernel.memory.scalars["radius"] = 0.11
+    kernel.blocks.scalars["radius"] = 0.11
     assert kernel.advance(0, 1)[0] == 0  # stops at the first decision
     with pytest.raises(ValueError, match="overlapping bodies cannot be separated"):
         kernel.advance(0, 1)

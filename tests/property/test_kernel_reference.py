@@ -47,7 +47,7 @@ def play_compared(game: Game, seed: int, spoil_skin: float | None = None) -> tup
     kernel = model._kernel
     calls: list[int] = []
     if spoil_skin is not None:
-        kernel.memory.scalars["skin"] = spoil_skin
+        kernel.blocks.scalars["skin"] = spoil_skin
     kernel.advance = compared(kernel, ReferenceKernel(game, model.arena), model.states, calls)
     model.play()
     return model, calls

@@ -94,7 +94,7 @@ def test_phases_are_those_of_the_call_stack() -> None:
     ] == [
         "set-up",
         "SimPy: loop",
-        "SimPy: scheduling of timeouts",
+        "SimPy: calls by robots",
         "learning and policies",
         "decision: dispatch",
         "decision: begin_leg",
