@@ -13,9 +13,9 @@ import numpy as np
 from kswarms.agents.common.arrays import Floats, Integers
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.jit import compiled
-from kswarms.agents.robot.draws import draw, seed_streams
 from kswarms.agents.streams import Purpose, Words
 from kswarms.model.kernel.arrays import Pairs, make_pairs, make_work
+from kswarms.model.kernel.draws import draw, seed_streams
 from kswarms.model.kernel.neighbours import cell_of
 from kswarms.model.kernel.relaxation import CLOSE, MAX_PASSES, TOLERANCE, relax_close
 
@@ -47,9 +47,10 @@ def start_poses(
     reach = radius + clearance / 2 + TOLERANCE  # radius of the discs that the relaxation separates
     cells = max(1, min(int(2 * limit / (_SLACK * CLOSE * reach)), int(2 * math.sqrt(n))))
     grid = _Grid(limit, np.full((cells, cells), -1), np.full(n, -1))
-    _draw_headings(seed_streams(seed, n, Purpose.HEADING), headings)
-    streams = seed_streams(seed, n, Purpose.POSITION)
-    crowded = _draw_places(streams, grid, (2 * radius + clearance) ** 2, x, y)
+    with np.errstate(over="ignore"):  # unsigned integers overflow on purpose
+        _draw_headings(seed_streams(seed, n, Purpose.HEADING), headings)
+        streams = seed_streams(seed, n, Purpose.POSITION)
+        crowded = _draw_places(streams, grid, (2 * radius + clearance) ** 2, x, y)
     if crowded and _separate(x, y, grid, reach) < 2 * radius + clearance:
         raise InputError("n", n, f"robots of radius {radius} m do not fit in a square of {2 * half} m")
     return np.column_stack((x, y)), headings

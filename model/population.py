@@ -8,11 +8,10 @@ from kswarms.agents.conformance.trial import try_policy
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.spec import deal, parse_policies
 from kswarms.agents.robot.controller import Controller
-from kswarms.agents.robot.draws import seed_streams
 from kswarms.agents.robot.host import Host
 from kswarms.agents.robot.krembot import Krembot
 from kswarms.agents.robot.state import RobotStates
-from kswarms.agents.streams import Purpose, Seeds, Streams
+from kswarms.agents.streams import Seeds, Streams
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game
 from kswarms.model.mesa_base import RobotSpace
@@ -58,7 +57,6 @@ def make_robots(model: Host, game: Game, seed: int) -> list[Krembot]:
     actions, swarms = model.actions, len(game.swarms)
     robots: list[Krembot] = []
     seeds = Seeds(seed, game.size)
-    escapes = seed_streams(seed, game.size, Purpose.WALL)
     for k, swarm in enumerate(game.swarms):
         specs = parse_policies(swarm.policy)
         for spec in specs:
@@ -78,7 +76,6 @@ def make_robots(model: Host, game: Game, seed: int) -> list[Krembot]:
                 stride_program=step * swarm.drive,
                 stride_action=step * swarm.drive_action,
                 swarms=swarms,
-                escapes=escapes,
                 actions=actions if spec.is_user_defined else None,
             )
             robots.append(robot)

@@ -4,9 +4,10 @@ A rule is an immutable object with a method. A new rule is a subclass of `Rule`:
 user-defined. All robots of a policy share one rule object; learned values are in their bandits.
 """
 
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from functools import partial
+from math import log, sqrt
 from typing import Final
 
 from numpy.random import Generator
@@ -58,7 +59,7 @@ class UCB(Rule):
 
     def bounds(self, bandit: Bandit) -> list[float]:
         """Return Q(a) + sqrt(γ ln N / N(a)) of each arm, all of which must have been tried."""
-        scale, sqrt = self.gamma * math.log(sum(bandit.count)), math.sqrt
+        scale = self.gamma * log(sum(bandit.count))
         return [
             reward / time + sqrt(scale / count)
             for reward, time, count in zip(bandit.reward, bandit.time, bandit.count)  # noqa: B905  # same length
@@ -73,7 +74,7 @@ class UCB(Rule):
         kind = type(self)
         if (kind.choose, kind.prefer, kind.bounds) != (UCB.choose, UCB.prefer, UCB.bounds):
             return self.choose
-        return _choose_of_two(self.gamma, self.choose)
+        return partial(_choose_of_two, self.gamma, self.choose)
 
 
 class DiscountedUCB(UCB):
@@ -141,29 +142,24 @@ def make_rule(rule: str | Rule) -> Rule:
 
 
 def _choose_of_two(
-    gamma: float, choose: Callable[[Bandit, Generator], int]
-) -> Callable[[Bandit, Generator], int]:
+    gamma: float, choose: Callable[[Bandit, Generator], int], bandit: Bandit, rng: Generator
+) -> int:
     """Return `UCB.choose` for two arms, without a loop and access to fields, which are slow.
 
     Other numbers of arms, untried arms and ties are left to `choose`.
     """
-    log, sqrt = math.log, math.sqrt
-
-    def fast_choose(bandit: Bandit, rng: Generator) -> int:
-        counts = bandit.count
-        if len(counts) == 2:
-            first, second = counts
-            if first >= FORGOTTEN and second >= FORGOTTEN:
-                scale = gamma * log(first + second)
-                reward, other_reward = bandit.reward
-                time, other_time = bandit.time
-                bound = reward / time + sqrt(scale / first)
-                other_bound = other_reward / other_time + sqrt(scale / second)
-                if bound != other_bound:
-                    return 0 if bound > other_bound else 1
-        return choose(bandit, rng)
-
-    return fast_choose
+    counts = bandit.count
+    if len(counts) == 2:
+        first, second = counts
+        if first >= FORGOTTEN and second >= FORGOTTEN:
+            scale = gamma * log(first + second)
+            reward, other_reward = bandit.reward
+            time, other_time = bandit.time
+            bound = reward / time + sqrt(scale / first)
+            other_bound = other_reward / other_time + sqrt(scale / second)
+            if bound != other_bound:
+                return 0 if bound > other_bound else 1
+    return choose(bandit, rng)
 
 
 def _argmax(values: list[float], rng: Generator) -> int:

@@ -4,6 +4,7 @@ Every leg, turn, flight and fight is one SimPy event, a `Timer`. At its end, the
 kernel that a decision is due; the robot decides after the next percepts.
 """
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -15,9 +16,9 @@ from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.interface import Policy
 from kswarms.agents.robot.driver import END_ACTION, END_LEG, START_DRIVE, STRAIGHT, Driver, turn_of
 from kswarms.agents.robot.host import Host
-from kswarms.agents.robot.sensing import read_sensors, turn_from_walls
+from kswarms.agents.robot.sensing import heads_for, read_sensors, walls_met, wrap
 from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, HOMING_ERROR, IDLE, LEG, TURN
-from kswarms.agents.streams import Purpose, Streams, Words
+from kswarms.agents.streams import Purpose, Streams
 
 
 class Krembot(Driver):
@@ -25,12 +26,11 @@ class Krembot(Driver):
 
     `number` is its number in the game and `swarm` its swarm, both from 0; `index` is its row in the state
     arrays (removed robots are skipped). In a period it drives `stride_program` in state P and `stride_action`
-    in state A (m). `escapes` are the streams of all robots for turns at walls. `actions`, if given, are the
-    only allowed choices of a user-defined policy.
+    in state A (m). `actions`, if given, are the only allowed choices of a user-defined policy.
     """
 
     __slots__ = (
-        "_action_periods", "_allowed", "_controller", "_escapes", "_generator", "_legs", "_ties",
+        "_action_periods", "_allowed", "_controller", "_generator", "_headings", "_leg_times", "_ties",
         "_timed_actions", "_turns", "number", "policy_name", "pucks", "swarm",
     )
 
@@ -45,7 +45,6 @@ class Krembot(Driver):
         stride_program: float,
         stride_action: float,
         swarms: int,
-        escapes: Words,
         actions: Sequence[Action] | None = None,
     ) -> None:
         super().__init__(model, number, policy, swarms, stride_program, stride_action)
@@ -57,9 +56,9 @@ class Krembot(Driver):
         self._allowed = actions
         self._controller = model.controller
         limit = model.controller.wander_turn
-        self._legs = streams.draws(Purpose.LEG, "exponential", model.controller.leg_mean)
+        self._leg_times = streams.draws(Purpose.LEG, "exponential", model.controller.leg_mean)
         self._turns = streams.draws(Purpose.WANDER, "uniform", -limit, limit)
-        self._escapes = escapes
+        self._headings = streams.draws(Purpose.WALL, "uniform", -math.pi, math.pi)
         self._ties = streams.draws(Purpose.VACANT, "random")
         self._action_periods = model.action_periods
         self._timed_actions = model.timed_actions
@@ -92,7 +91,7 @@ class Krembot(Driver):
     def begin_leg(self) -> None:
         """Wander straight ahead for an exponential duration."""
         self._drive(LEG, self._stride_program)
-        self._set_timer(self._controller.periods(next(self._legs)), END_LEG)
+        self._set_timer(self._controller.periods(next(self._leg_times)), END_LEG)
 
     def begin_wander_turn(self) -> None:
         """Turn in place by a uniform angle."""
@@ -102,8 +101,14 @@ class Krembot(Driver):
         """Turn in place to a heading drawn uniformly from those without a wall ahead."""
         controller = self._controller
         x, y = self._states.positions[self.index].tolist()
-        arena = controller.half, controller.wall_reach, controller.wall_half_angle, controller.escape_away
-        self._turn(TURN, turn_from_walls(self._escapes, self.number, x, y, self.heading, *arena))
+        heading = self.heading
+        arena = controller.half, controller.wall_reach, controller.wall_half_angle
+        met = walls_met(x, y, heading, *arena)
+        while True:
+            target = next(self._headings)
+            if not (heads_for(target, met) if controller.escape_away else walls_met(x, y, target, *arena)):
+                break
+        self._turn(TURN, wrap(target - heading))
 
     def go_home(self, error: float) -> None:
         """Turn towards the own base if the heading is off by `error` (rad), else drive to it."""

@@ -12,8 +12,6 @@ import numpy as np
 from kswarms.agents.body import SENSORS
 from kswarms.agents.common.arrays import Floats, Integers, Rows
 from kswarms.agents.common.jit import compiled
-from kswarms.agents.robot.draws import draw
-from kswarms.agents.streams import Words
 
 SECTOR: Final = 2.0 * math.pi / SENSORS  # angle covered by one sensor (rad)
 # Arrays: a compiled function reads a tuple with a jump for each index.
@@ -78,30 +76,6 @@ def heads_for(heading: float, walls: int) -> bool:
         if walls >> wall & 1 and math.cos(heading - _wall_direction(wall)) > 0.0:
             return True
     return False
-
-
-@compiled
-def turn_from_walls(
-    streams: Words,
-    robot: int,
-    x: float,
-    y: float,
-    heading: float,
-    half: float,
-    reach: float,
-    half_angle: float,
-    away: bool,
-) -> float:
-    """Draw a uniform heading that meets no wall; return the turn towards it (rad).
-
-    If `away`, only the walls met now count, but the new heading has no component towards them. `streams` are
-    those of `kswarms.agents.robot.draws`; the other parameters are those of `walls_met`.
-    """
-    met = walls_met(x, y, heading, half, reach, half_angle)
-    while True:
-        target = -math.pi + 2.0 * math.pi * draw(streams, robot)
-        if not (heads_for(target, met) if away else walls_met(x, y, target, half, reach, half_angle) != 0):
-            return wrap(target - heading)
 
 
 @compiled

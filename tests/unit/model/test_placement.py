@@ -11,9 +11,9 @@ from scipy.spatial.distance import pdist
 
 from kswarms.agents.common.arrays import Floats
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.robot.draws import draw, seed_streams
 from kswarms.agents.streams import Purpose, stream
 from kswarms.model.kernel.arrays import make_pairs, make_work
+from kswarms.model.kernel.draws import draw, seed_streams
 from kswarms.model.kernel.relaxation import TOLERANCE, relax
 from kswarms.model.placement import start_poses
 

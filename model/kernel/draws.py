@@ -1,12 +1,11 @@
-"""Random numbers for compiled code: the streams of one purpose of all robots.
+"""Random numbers of all robots at once: the first draws of the streams of one purpose. Compiled.
 
-The numbers equal those of `kswarms.agents.streams.stream`, whose generators take 13 µs each to create. The
-generator is PCG64 (O'Neill 2014; XSL RR 128/64).
+They equal those of `kswarms.agents.streams.stream`, whose generators take 13 µs each to create. The generator
+is PCG64 (O'Neill 2014; XSL RR 128/64).
 """
 
 from typing import Final
 
-import numba
 import numpy as np
 
 from kswarms.agents.common.jit import compiled
@@ -23,8 +22,7 @@ _TO_UNIT: Final = 2.0**-53
 def seed_streams(seed: int, robots: int, purpose: Purpose) -> Words:
     """Return the states of the streams of robots 0 … `robots` − 1, uint64, shape (robots, 4), for `draw`."""
     streams = seed_words(seed, robots, purpose)
-    with np.errstate(over="ignore"):
-        _start(streams)
+    _start(streams)
     return streams
 
 
@@ -54,10 +52,6 @@ def _step(streams: Words, robot: int) -> None:
     streams[robot, 1] = product + streams[robot, 3]
     carry = _ONE if streams[robot, 1] < product else np.uint64(0)
     streams[robot, 0] = high * _MULTIPLIER_LOW + low * _MULTIPLIER_HIGH + carried + streams[robot, 2] + carry
-
-
-if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]  # not in its stubs
-    _step = np.errstate(over="ignore")(_step)  # unsigned integers overflow on purpose
 
 
 @compiled
