@@ -9,10 +9,12 @@ EXPLORE := $(VENV)/.installed-explore
 TEST := $(VENV)/.installed-test
 DEMO := results/demo
 # Tests that play many games: measuring coverage would double their time.
-GAMES := tests/outcomes tests/baseline
+GAMES := tests/outcomes tests/baseline tests/property
 
 .DEFAULT_GOAL := help
+ifndef INSTALLED
 .NOTPARALLEL:  # two installations into one environment would collide
+endif
 .PHONY: help demo explore test lint types versions docs bench profile peers full clean
 
 help:  ## list the targets
@@ -31,7 +33,8 @@ demo: $(RUN)  ## install, play three scenarios, draw their figures into results/
 explore: $(EXPLORE)  ## open a page to watch, change and inspect games
 	$(BIN)/kswarms explore
 
-test: lint types docs  ## run all checks: lint, types, documentation, tests with coverage
+test: lint  ## run all checks: lint, types, documentation, tests with coverage
+	@$(MAKE) --no-print-directory -j2 --output-sync=recurse INSTALLED=1 types docs
 	$(BIN)/python -m pytest -n auto --dist loadfile --cov --cov-report=term-missing:skip-covered $(GAMES:%=--ignore=%)
 	$(BIN)/python -m pytest -n auto --dist loadfile $(GAMES)
 

@@ -7,6 +7,7 @@ fails.
 
 import base64
 import re
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, Final
 
@@ -30,8 +31,10 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     for package in PACKAGES:
         files.append(File.generated(config, f"reference/{package}.md", content=reference(package)))
     files.append(File.generated(config, "reference/columns.md", content=columns()))
-    for path in sorted((ROOT / "docs" / "notebooks").glob("*.py")):
-        page, pictures = notebook(path)
+    paths = sorted((ROOT / "docs" / "notebooks").glob("*.py"))
+    with ThreadPoolExecutor(max_workers=2) as threads:  # each notebook has its own process
+        notebooks = list(threads.map(notebook, paths))
+    for path, (page, pictures) in zip(paths, notebooks, strict=True):
         files.append(File.generated(config, f"notebooks/{path.stem}.md", content=page))
         for name, content in pictures.items():
             files.append(File.generated(config, f"notebooks/{name}", content=content))
