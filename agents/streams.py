@@ -13,6 +13,8 @@ from numpy.random import PCG64, Generator, SeedSequence
 from numpy.random.bit_generator import ISpawnableSeedSequence
 from numpy.typing import NDArray
 
+from kswarms.agents.common.arrays import Floats
+
 _FIRST_BLOCK: Final = 4
 _LARGEST_BLOCK: Final = 16
 _POOL: Final = 4
@@ -139,14 +141,19 @@ class Streams:
             self._streams[purpose] = generator
         return generator
 
-    def draws(self, purpose: Purpose, method: str, *arguments: float) -> Iterator[float]:
-        """Yield the numbers that a method of the stream draws, such as ``uniform`` with its two limits.
+    def blocks(self, purpose: Purpose, method: str, *arguments: float) -> Iterator[Floats]:
+        """Yield arrays of numbers that a method of the stream draws, such as ``uniform`` with its two limits.
 
-        The numbers are those of single draws. They are drawn in blocks, which takes a fraction of the time.
-        The blocks grow, because a robot of a large swarm may need few of them.
+        The numbers are those of single draws. A block takes a fraction of their time. The blocks grow,
+        because a robot of a large swarm may need few numbers.
         """
         draw = getattr(self.generator(purpose), method)
         size = _FIRST_BLOCK
         while True:
-            yield from draw(*arguments, size).tolist()
+            yield draw(*arguments, size)
             size = min(2 * size, _LARGEST_BLOCK)
+
+    def draws(self, purpose: Purpose, method: str, *arguments: float) -> Iterator[float]:
+        """Yield the numbers of `blocks` one by one."""
+        for block in self.blocks(purpose, method, *arguments):
+            yield from block.tolist()

@@ -206,7 +206,8 @@ class GameModel(GameState):
         while True:
             if self._due > 0:
                 self._decide(now, self._due)
-            tick, self._due = self._kernel.advance(now, env.peek())  # type: ignore[arg-type]
+            # The end of the game is always scheduled.
+            tick, self._due = self._kernel.advance(now, env.queue[0][0])  # type: ignore[arg-type]
             if tick > now or self._due == 0:
                 break
         self._motion.schedule_in(tick - now)

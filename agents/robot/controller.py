@@ -1,7 +1,14 @@
 """Constants of the controller."""
 
 import math
-from typing import NamedTuple
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from kswarms.agents.common.arrays import Floats
+
+_ROUNDING: Final = 1e-9
+"""Maximum rounding error of a quotient such as 0.3 / 0.1."""
 
 
 class Controller(NamedTuple):
@@ -20,8 +27,12 @@ class Controller(NamedTuple):
 
     def periods(self, seconds: float) -> int:
         """Return a duration in periods, rounded up, at least 1."""
-        # Subtract 1e-9 to absorb rounding errors of a quotient such as 0.3 / 0.1.
-        return max(1, math.ceil(seconds / self.period - 1e-9))
+        return max(1, math.ceil(seconds / self.period - _ROUNDING))
+
+    def whole_periods(self, seconds: Floats) -> list[int]:
+        """Return `periods` of several durations."""
+        periods: list[int] = np.maximum(1.0, np.ceil(seconds / self.period - _ROUNDING)).astype(int).tolist()
+        return periods
 
     def seconds(self, periods: int) -> float:
         """Return the duration of some periods (s), rounded to nanoseconds."""

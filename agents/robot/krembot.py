@@ -6,6 +6,7 @@ kernel that a decision is due; the robot decides after the next percepts.
 
 import math
 from collections.abc import Sequence
+from itertools import chain
 
 import numpy as np
 from simpy.events import NORMAL
@@ -16,7 +17,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.interface import Policy
 from kswarms.agents.robot.driver import END_ACTION, END_LEG, START_DRIVE, STRAIGHT, Driver, turn_of
 from kswarms.agents.robot.host import Host
-from kswarms.agents.robot.sensing import heads_for, read_sensors, walls_met, wrap
+from kswarms.agents.robot.sensing import NO_HEADINGS, read_sensors, turn_from_walls
 from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, HOMING_ERROR, IDLE, LEG, TURN
 from kswarms.agents.streams import Purpose, Streams
 
@@ -30,8 +31,8 @@ class Krembot(Driver):
     """
 
     __slots__ = (
-        "_action_periods", "_allowed", "_controller", "_generator", "_headings", "_leg_times", "_ties",
-        "_timed_actions", "_turns", "number", "policy_name", "pucks", "swarm",
+        "_action_periods", "_allowed", "_controller", "_escapes", "_generator", "_headings", "_legs", "_ties",
+        "_timed_actions", "_turns", "_used", "number", "policy_name", "pucks", "swarm",
     )
 
     def __init__(
@@ -56,9 +57,12 @@ class Krembot(Driver):
         self._allowed = actions
         self._controller = model.controller
         limit = model.controller.wander_turn
-        self._leg_times = streams.draws(Purpose.LEG, "exponential", model.controller.leg_mean)
+        legs = streams.blocks(Purpose.LEG, "exponential", model.controller.leg_mean)
+        self._legs = chain.from_iterable(map(model.controller.whole_periods, legs))
         self._turns = streams.draws(Purpose.WANDER, "uniform", -limit, limit)
-        self._headings = streams.draws(Purpose.WALL, "uniform", -math.pi, math.pi)
+        self._escapes = streams.blocks(Purpose.WALL, "uniform", -math.pi, math.pi)
+        self._headings = NO_HEADINGS  # the present block of `_escapes`
+        self._used = 0  # number of these headings that were used
         self._ties = streams.draws(Purpose.VACANT, "random")
         self._action_periods = model.action_periods
         self._timed_actions = model.timed_actions
@@ -91,7 +95,7 @@ class Krembot(Driver):
     def begin_leg(self) -> None:
         """Wander straight ahead for an exponential duration."""
         self._drive(LEG, self._stride_program)
-        self._set_timer(self._controller.periods(next(self._leg_times)), END_LEG)
+        self._set_timer(next(self._legs), END_LEG)
 
     def begin_wander_turn(self) -> None:
         """Turn in place by a uniform angle."""
@@ -99,16 +103,15 @@ class Krembot(Driver):
 
     def begin_wall_turn(self) -> None:
         """Turn in place to a heading drawn uniformly from those without a wall ahead."""
-        controller = self._controller
-        x, y = self._states.positions[self.index].tolist()
-        heading = self.heading
+        controller, states, index = self._controller, self._states, self.index
+        pose = states.x[index], states.y[index], states.heading[index]
         arena = controller.half, controller.wall_reach, controller.wall_half_angle
-        met = walls_met(x, y, heading, *arena)
-        while True:
-            target = next(self._headings)
-            if not (heads_for(target, met) if controller.escape_away else walls_met(x, y, target, *arena)):
-                break
-        self._turn(TURN, wrap(target - heading))
+        away, angle = controller.escape_away, math.nan
+        while angle != angle:  # NaN: no heading of the block is allowed
+            if self._used == len(self._headings):
+                self._headings, self._used = next(self._escapes), 0
+            self._used, angle = turn_from_walls(self._headings, self._used, *pose, *arena, away)
+        self._turn(TURN, angle)
 
     def go_home(self, error: float) -> None:
         """Turn towards the own base if the heading is off by `error` (rad), else drive to it."""

@@ -79,6 +79,47 @@ def heads_for(heading: float, walls: int) -> bool:
 
 
 @compiled
+def turn_from_walls(
+    headings: Floats,
+    used: int,
+    x: float,
+    y: float,
+    heading: float,
+    half: float,
+    reach: float,
+    half_angle: float,
+    away: bool,
+) -> tuple[int, float]:
+    """Find the first of random headings at which a robot meets no wall.
+
+    Parameters
+    ----------
+    headings : ndarray of float64, shape (k,)
+        Random headings (rad), of which the first `used` were used before.
+    x, y, heading, half, reach, half_angle : float
+        As in `walls_met`.
+    away : bool
+        Only the walls that the robot meets now count, and it must not head towards them at all.
+
+    Returns
+    -------
+    used : int
+        The number of headings used.
+    angle : float
+        The turn to the heading (rad), NaN if there is none.
+    """
+    met = walls_met(x, y, heading, half, reach, half_angle)
+    for k in range(used, len(headings)):
+        target = headings[k]
+        if not (heads_for(target, met) if away else walls_met(x, y, target, half, reach, half_angle) != 0):
+            return k + 1, wrap(target - heading)
+    return len(headings), math.nan
+
+
+NO_HEADINGS: Final = np.empty(0)
+
+
+@compiled
 def _wall_direction(wall: int) -> float:
     return (0.0, math.pi, 0.5 * math.pi, -0.5 * math.pi)[wall]
 

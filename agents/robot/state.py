@@ -68,7 +68,7 @@ class RobotStates:
         the first columns are in use.
     bodies : Bodies
         The rows of these arrays; `x` and `y` are the columns of `positions`.
-    swarm, phase, carrying, opponent, heading, stride, turn_rate : memoryview, shape (n,)
+    x, y, swarm, phase, carrying, opponent, heading, stride, turn_rate : memoryview, shape (n,)
         Views of the arrays; reading or writing one number is twice as fast as with arrays.
     numbers : list of int
         Number of the robot in each row. Numbers never change; rows change when a robot is removed.
@@ -133,6 +133,8 @@ class RobotStates:
 
     def _view(self, n: int) -> None:
         self.bodies = bodies = Bodies(*self.positions.T, *self.motion[:, :n], *self.roles[:, :n])
+        self.x = cast("memoryview[float]", bodies.x.data)
+        self.y = cast("memoryview[float]", bodies.y.data)
         self.swarm = bodies.swarm.data
         self.phase = bodies.phase.data
         self.carrying = bodies.carrying.data
