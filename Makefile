@@ -8,8 +8,6 @@ RUN := $(VENV)/.installed
 EXPLORE := $(VENV)/.installed-explore
 TEST := $(VENV)/.installed-test
 DEMO := results/demo
-# Tests that play many games: measuring coverage would double their time.
-GAMES := tests/outcomes tests/baseline tests/property
 
 .DEFAULT_GOAL := help
 ifndef INSTALLED
@@ -33,10 +31,11 @@ demo: $(RUN)  ## install, play three scenarios, draw their figures into results/
 explore: $(EXPLORE)  ## open a page to watch, change and inspect games
 	$(BIN)/kswarms explore
 
+# Slow tests run without coverage, which would double the time of many of them.
 test: lint  ## run all checks: lint, types, documentation, tests with coverage
 	@$(MAKE) --no-print-directory -j2 --output-sync=recurse INSTALLED=1 types docs
-	$(BIN)/python -m pytest -n auto --dist loadfile --cov --cov-report=term-missing:skip-covered $(GAMES:%=--ignore=%)
-	$(BIN)/python -m pytest -n auto --dist loadfile $(GAMES)
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "not slow and not full" --cov --cov-report=term-missing:skip-covered
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "slow and not full"
 
 lint: $(TEST)  ## check style (ruff) and the direction of imports (import-linter)
 	$(BIN)/ruff check .

@@ -44,7 +44,26 @@ def find_python(version: str) -> str | None:
     return None
 
 
-def check(name: str, python: str, options: list[str], tests: list[str]) -> bool:
+class Budget:
+    """The time that is left for environments; without `within`, there is no limit.
+
+    An environment is expected to take `about` (s), or as long as the longest one so far.
+    """
+
+    def __init__(self, within: float | None, about: float) -> None:
+        self._end = None if within is None else time.monotonic() + within
+        self._about = about
+
+    def allows_one(self) -> bool:
+        """Return whether a further environment would end in time."""
+        return self._end is None or time.monotonic() + self._about <= self._end
+
+    def spent(self, seconds: float) -> None:
+        """Note the duration of an environment."""
+        self._about = max(self._about, seconds)
+
+
+def check(name: str, python: str, options: list[str], tests: list[str], budget: Budget) -> bool:
     """Install kswarms into an environment, with options of pip, and run tests; return whether they pass."""
     started = time.monotonic()
     environment = ROOT / ".versions" / name
@@ -57,31 +76,28 @@ def check(name: str, python: str, options: list[str], tests: list[str]) -> bool:
         [own, "-m", "pytest", "-q", "-n", "auto", "--dist", "loadfile", "-p", "no:cacheprovider", *tests],
     ]
     passed = all(subprocess.run(command, cwd=ROOT, check=False).returncode == 0 for command in commands)
+    budget.spent(time.monotonic() - started)
     print(f"{name}: {'passed' if passed else 'FAILED'} in {time.monotonic() - started:.0f} s", flush=True)
     return passed
-
-
-def is_late(started: float, within: float | None) -> bool:
-    """Return whether more than `within` seconds have passed."""
-    return within is not None and time.monotonic() - started > within
 
 
 def main() -> int:
     """Check all environments; return the exit status."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--short", action="store_true", help="run a part of the tests")
-    parser.add_argument("--within", type=float, help="skip the environments that would start later (s)")
+    parser.add_argument("--within", type=float, help="skip the environments that would end later (s)")
+    parser.add_argument("--about", type=float, default=0.0, help="expected time of the first one (s)")
     given = parser.parse_args()
-    short, started = given.short, time.monotonic()
+    short, budget = given.short, Budget(given.within, given.about)
     tests = [*SHORT, "-m", "not slow and not full"] if short else ["tests"]
     failed = []
     constraints = ROOT / ".versions" / "lowest.txt"
     constraints.parent.mkdir(exist_ok=True)
     constraints.write_text("".join(f"{line}\n" for line in lowest_versions.pins(ROOT)), encoding="utf-8")
     # Old libraries warn of newer ones, of which kswarms itself knows nothing.
-    if is_late(started, given.within):
+    if not budget.allows_one():
         print("lowest: skipped, no time is left", flush=True)
-    elif not check("lowest", sys.executable, ["-c", str(constraints)], [*tests, "-W", "default"]):
+    elif not check("lowest", sys.executable, ["-c", str(constraints)], [*tests, "-W", "default"], budget):
         failed.append("lowest")
     for version in PYTHONS:
         name = f"python-{version}"
@@ -89,9 +105,9 @@ def main() -> int:
             print(f"{name}: skipped, `make test` runs all tests with it", flush=True)
         elif (python := find_python(version)) is None:
             print(f"{name}: skipped, there is no Python {version}", flush=True)
-        elif is_late(started, given.within):
+        elif not budget.allows_one():
             print(f"{name}: skipped, no time is left", flush=True)
-        elif not check(name, python, ["--upgrade", "--upgrade-strategy", "eager"], tests):
+        elif not check(name, python, ["--upgrade", "--upgrade-strategy", "eager"], tests, budget):
             failed.append(name)
     return 1 if failed else 0
 
