@@ -6,6 +6,7 @@ numbers for the same decisions, and an additional robot does not change the numb
 
 from collections.abc import Iterator
 from enum import IntEnum
+from itertools import chain
 from typing import Any, Final
 
 import numpy as np
@@ -154,6 +155,5 @@ class Streams:
             size = min(2 * size, _LARGEST_BLOCK)
 
     def draws(self, purpose: Purpose, method: str, *arguments: float) -> Iterator[float]:
-        """Yield the numbers of `blocks` one by one."""
-        for block in self.blocks(purpose, method, *arguments):
-            yield from block.tolist()
+        """Return an iterator over the numbers of `blocks`."""
+        return chain.from_iterable(map(np.ndarray.tolist, self.blocks(purpose, method, *arguments)))
