@@ -117,6 +117,7 @@ def turn_from_walls(
 
 
 NO_HEADINGS: Final = np.empty(0)
+"""Random headings before the first are drawn."""
 
 
 @compiled
