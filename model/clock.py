@@ -18,9 +18,10 @@ AFTER_TIMEOUTS: Final = 2
 class Instant(Event):
     """Reusable event with an explicit priority, `BEFORE_TIMEOUTS` or `AFTER_TIMEOUTS`."""
 
+    env: Clock
+
     def __init__(self, env: Clock, priority: int, callback: Callable[[Event], None]) -> None:
         super().__init__(env)
-        self._clock = env
         self._ok = True
         self._value = None
         self._priority = priority
@@ -29,7 +30,7 @@ class Instant(Event):
     def schedule_in(self, delay: int) -> None:
         """Schedule the event `delay` periods from now; it must not be scheduled already."""
         self.callbacks = self._callbacks
-        clock = self._clock
+        clock = self.env
         clock.push((clock.now + delay, self._priority, next(clock.order), self))
 
 

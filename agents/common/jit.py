@@ -96,7 +96,7 @@ def _digest() -> str:
 def _announce_compilation() -> None:
     """Log one line on a terminal, in the main process only."""
     if sys.stderr is not None and sys.stderr.isatty() and multiprocessing.parent_process() is None:
-        logging.getLogger(__name__).warning("kswarms: compiling once, for a few seconds")
+        logging.getLogger(__name__).warning("kswarms: compiling once, for up to half a minute")
 
 
 @cache

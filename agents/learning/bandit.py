@@ -37,14 +37,13 @@ class Bandit:
 
     def update(self, arm: int, reward: float, time: float, discount: float = 1.0) -> float:
         """Add a conflict: its R and T(a) + T(p) (s); `discount` is λ of discounted UCB. Return Q(a)."""
-        rewards, times = self.reward, self.time
         if discount != 1.0:
-            for sums in (rewards, times, self.count):
+            for sums in (self.reward, self.time, self.count):
                 sums[:] = [discount * value for value in sums]
-        rewards[arm] += reward
-        times[arm] += time
+        self.reward[arm] += reward
+        self.time[arm] += time
         self.count[arm] += 1.0
-        return rewards[arm] / times[arm] if times[arm] > 0.0 else math.nan
+        return self.value(arm)
 
     def value(self, arm: int) -> float:
         """Return Q(a) = Σ R / Σ (T(a) + T(p)) (Eq. 4.15), NaN if the arm is untried."""

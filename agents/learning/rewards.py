@@ -61,7 +61,6 @@ class Reward(FrozenModel, ABC):
             Swarm-ID of the other robot, from 1.
         """
 
-
     def linear_weights(self, direction: int, inter: bool, opponent: int) -> Weights | None:
         """Return the weights of T(p) and, for n' from 0 to 8, of T(a), if R is their sum; else None.
 
@@ -92,7 +91,6 @@ class WLU(Reward):
             return None
         delta, b = self._parameters(opponent)
         return _wlu_weights(b, sigma(inter, direction), delta)
-
 
     def _parameters(self, opponent: int) -> tuple[float, float]:
         """Return Δ and b of an opponent."""

@@ -209,6 +209,18 @@ def _momentum(done: int) -> float:
 
 
 @compiled
+def _next_move(move: float, shove: float, touches: int, momentum: float) -> float:
+    """Return the move of a body in this pass, from its last one and the sum of its corrections (m).
+
+    A body that overlaps no longer loses its momentum, which would push it into the next body.
+    """
+    kept = min(1, touches)
+    # The sum of three or more corrections would overshoot; twice their mean does not.
+    scale = 2.0 / max(2, touches)
+    return momentum * (kept * move) + scale * shove
+
+
+@compiled
 def _move_all(x: Floats, y: Floats, limit: float, work: Work, momentum: float) -> None:
     """Do the same as `_move_bodies` in loops over all bodies, which use vector instructions."""
     _move_along(x, work.move_x, work.shove_x, work.touches, limit, momentum)
@@ -222,9 +234,7 @@ def _move_along(
     place: Floats, move: Floats, shove: Floats, touches: Integers, limit: float, momentum: float
 ) -> None:
     for i in range(len(place)):
-        kept = min(1, touches[i])
-        scale = 2.0 / max(2, touches[i])
-        move[i] = momentum * (kept * move[i]) + scale * shove[i]
+        move[i] = _next_move(move[i], shove[i], touches[i], momentum)
         place[i] = min(limit, max(-limit, place[i] + move[i]))
         shove[i] = 0.0
 
@@ -242,16 +252,15 @@ def _move_bodies(
 ) -> int:
     """Move the overlapping bodies by their summed corrections, within the walls, and reset the sums.
 
-    The first `n_moved` bodies of the queue moved in the last pass. A body that overlaps no longer loses its
-    momentum, which would push it into the next body. Return the number of bodies moved.
+    The first `n_moved` bodies of the queue moved in the last pass. Return the number of bodies moved.
     """
     move_x, move_y, shove_x, shove_y = work.move_x, work.move_y, work.shove_x, work.shove_y
     touches, queued, queue = work.touches, work.queued, work.queue
     for q in range(n_moved):
         i = queue[q]
-        kept = min(1, touches[i])
-        move_x[i] *= kept
-        move_y[i] *= kept
+        if touches[i] == 0:
+            move_x[i] = 0.0
+            move_y[i] = 0.0
     size = 0
     for c in range(n_overlaps):
         for i in (pairs.overlap_first[c], pairs.overlap_second[c]):
@@ -260,10 +269,8 @@ def _move_bodies(
             queued[i] = 1
     for q in range(size):
         i = queue[q]
-        # The sum of three or more corrections would overshoot; twice their mean does not.
-        scale = 2.0 / max(2, touches[i])
-        move_x[i] = momentum * move_x[i] + scale * shove_x[i]
-        move_y[i] = momentum * move_y[i] + scale * shove_y[i]
+        move_x[i] = _next_move(move_x[i], shove_x[i], touches[i], momentum)
+        move_y[i] = _next_move(move_y[i], shove_y[i], touches[i], momentum)
         x[i] = min(limit, max(-limit, x[i] + move_x[i]))
         y[i] = min(limit, max(-limit, y[i] + move_y[i]))
         shove_x[i] = 0.0

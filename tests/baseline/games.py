@@ -108,9 +108,8 @@ def digests(games: Iterable[tuple[str, Game, int]]) -> Iterator[tuple[str, dict[
 
 def _digest(columns: dict[str, list[Any]], name: str) -> str:
     kept = {c: values for c, values in columns.items() if c != "policy" or name != "learned file"}
-    return hashlib.sha256(json.dumps(kept, sort_keys=True, default=np.ndarray.tolist).encode()).hexdigest()[
-        :16
-    ]
+    text = json.dumps(kept, sort_keys=True, default=np.ndarray.tolist)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def main() -> None:

@@ -86,7 +86,7 @@ def test_a_terminal_shows_one_line_while_code_is_compiled(package: Package) -> N
     worker = f"import multiprocessing as m; m.parent_process = lambda: 'main'; {code}"
     assert package.run(worker) == ("4.0", "")
     package.write(2.0)
-    assert package.run(code) == ("6.0", "kswarms: compiling once, for a few seconds\n")
+    assert package.run(code) == ("6.0", "kswarms: compiling once, for up to half a minute\n")
     assert package.run(code) == ("6.0", "")
 
 
