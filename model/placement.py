@@ -12,7 +12,7 @@ import numpy as np
 
 from kswarms.agents.common.arrays import Floats, Integers
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.jit import compiled
+from kswarms.agents.common.jit import compiled, compiled_inner
 from kswarms.agents.streams import Purpose, Words
 from kswarms.model.kernel.arrays import Pairs, make_pairs, make_work
 from kswarms.model.kernel.draws import draw, seed_streams
@@ -87,7 +87,7 @@ def _draw_places(streams: Words, grid: _Grid, min_squared: float, x: Floats, y: 
     return crowded
 
 
-@compiled
+@compiled_inner
 def _room(grid: _Grid, x: Floats, y: Floats, own_x: float, own_y: float, at_most: float) -> float:
     """Return the squared distance (m²) from a place to the nearest robot, or `at_most` if that is less."""
     cells = len(grid.first)
@@ -163,7 +163,7 @@ def _list_close(x: Floats, y: Floats, grid: _Grid, reach: float, pairs: Pairs) -
     return size, math.sqrt(nearest)
 
 
-@compiled
+@compiled_inner
 def _insert(pairs: Pairs, begin: int, size: int, i: int, j: int) -> None:
     """Insert the pair (i, j) among the pairs of i, which begin at `begin`, so that j ascends."""
     first, second = pairs.close_first, pairs.close_second

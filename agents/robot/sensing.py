@@ -11,7 +11,7 @@ import numpy as np
 
 from kswarms.agents.body import SENSORS
 from kswarms.agents.common.arrays import Floats, Integers, Rows
-from kswarms.agents.common.jit import compiled
+from kswarms.agents.common.jit import compiled, compiled_inner
 
 SECTOR: Final = 2.0 * math.pi / SENSORS  # angle covered by one sensor (rad)
 # Arrays: a compiled function reads a tuple with a jump for each index.
@@ -120,7 +120,7 @@ NO_HEADINGS: Final = np.empty(0)
 """Random headings before the first are drawn."""
 
 
-@compiled
+@compiled_inner
 def _wall_direction(wall: int) -> float:
     return (0.0, math.pi, 0.5 * math.pi, -0.5 * math.pi)[wall]
 
@@ -180,7 +180,7 @@ def sense(
         free[sensor] = min(wall, math.sqrt(free[sensor]) - 2.0 * radius)
 
 
-@compiled
+@compiled_inner
 def _sector(ahead: float, aside: float) -> int:
     """Return the sensor whose sector contains a direction.
 

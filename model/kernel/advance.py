@@ -7,7 +7,7 @@ kernel returns before decisions, and is called again after them.
 import math
 from typing import Final
 
-from kswarms.agents.common.jit import compiled
+from kswarms.agents.common.jit import compiled, compiled_inner
 from kswarms.agents.robot.sensing import wrap
 from kswarms.agents.robot.state import Bodies
 from kswarms.model.kernel.arrays import Blocks, Memory, memory_of
@@ -56,7 +56,7 @@ def advance(blocks: Blocks, tick: int, until: int) -> tuple[int, int]:
     return tick, 0
 
 
-@compiled
+@compiled_inner
 def _turn(bodies: Bodies) -> None:
     """Turn all bodies by one period."""
     heading, turn_rate = bodies.heading, bodies.turn_rate
@@ -68,7 +68,7 @@ def _turn(bodies: Bodies) -> None:
             forward_y[i] = math.sin(heading[i])
 
 
-@compiled
+@compiled_inner
 def _separate_unlisted(m: Memory) -> None:
     """Separate bodies that moved so far that they may overlap bodies with which they are not listed."""
     for _ in range(_MAX_REFRESHES):

@@ -6,7 +6,7 @@ import numpy as np
 
 from kswarms.agents.body import SENSORS
 from kswarms.agents.common.arrays import Floats, Integers, Records, Rows
-from kswarms.agents.common.jit import compiled
+from kswarms.agents.common.jit import compiled_inner
 from kswarms.agents.robot.state import Bodies
 
 SCALARS: Final = np.dtype(
@@ -166,7 +166,7 @@ def make_pairs(capacity: int) -> Pairs:
 # Compiled functions cannot return arrays to Python, since numba's reference counting is off.
 
 
-@compiled
+@compiled_inner
 def _work_of(floats: Floats, integers: Integers, rows: Rows) -> Work:
     return Work(
         floats[0], floats[1], floats[2], floats[3], floats[4], floats[5], floats[6],
@@ -175,12 +175,12 @@ def _work_of(floats: Floats, integers: Integers, rows: Rows) -> Work:
     )  # fmt: skip
 
 
-@compiled
+@compiled_inner
 def _pairs_of(block: Rows) -> Pairs:
     return Pairs(block[0], block[1], block[2], block[3], block[4], block[5])
 
 
-@compiled
+@compiled_inner
 def memory_of(blocks: Blocks) -> Memory:
     """Return the fields of `blocks`, in compiled code."""
     n, motion, roles = len(blocks.events), blocks.motion, blocks.roles

@@ -11,7 +11,7 @@ import math
 from typing import Final
 
 from kswarms.agents.common.arrays import Integers, Records
-from kswarms.agents.common.jit import compiled
+from kswarms.agents.common.jit import compiled_inner
 from kswarms.model.kernel.arrays import MAX_CONTACTS, Memory
 from kswarms.model.kernel.neighbours import list_close
 from kswarms.model.kernel.relaxation import relax
@@ -19,7 +19,7 @@ from kswarms.model.kernel.relaxation import relax
 JAMMED: Final = "overlapping bodies cannot be separated: too many robots, or too long a period"
 
 
-@compiled
+@compiled_inner
 def translate(m: Memory) -> None:
     """Move all bodies by one period; raise a ValueError if overlaps remain."""
     x, y, stride = m.bodies.x, m.bodies.y, m.bodies.stride
@@ -48,7 +48,7 @@ def translate(m: Memory) -> None:
         separate(m)
 
 
-@compiled
+@compiled_inner
 def separate(m: Memory) -> None:
     """Relax overlaps; raise a ValueError if overlaps remain."""
     radius, half, n_pairs = m.scalars["radius"][0], m.scalars["half"][0], m.scalars["n_pairs"][0]
@@ -56,7 +56,7 @@ def separate(m: Memory) -> None:
         raise ValueError(JAMMED)
 
 
-@compiled
+@compiled_inner
 def _meet_bodies(m: Memory, fastest: float) -> None:
     """Find the pairs that would overlap, and the part of each motion that is blocked."""
     x, y, stride, work, contacts = m.bodies.x, m.bodies.y, m.bodies.stride, m.work, m.contacts
@@ -95,7 +95,7 @@ def _meet_bodies(m: Memory, fastest: float) -> None:
             shove_y[i] -= push_share * share * dy
 
 
-@compiled
+@compiled_inner
 def _meet_walls(m: Memory) -> None:
     """Find the robots that would leave the arena, and the part of each motion that is blocked."""
     x, y, radius, half = m.bodies.x, m.bodies.y, m.scalars["radius"][0], m.scalars["half"][0]
@@ -112,7 +112,7 @@ def _meet_walls(m: Memory) -> None:
                 _add_contact(m.contacts[i], count, i, nx, ny, towards, towards - gap)
 
 
-@compiled
+@compiled_inner
 def _add_contact(
     contacts: Records, count: Integers, robot: int, x: float, y: float, towards: float, blocked: float
 ) -> None:
@@ -125,7 +125,7 @@ def _add_contact(
         count[robot] = k + 1
 
 
-@compiled
+@compiled_inner
 def _slide(x: float, y: float, friction: float, contacts: Records, count: int) -> tuple[float, float]:
     """Return the motion (x, y) of a robot without its blocked parts and the loss by friction."""
     normal_x, normal_y = contacts["x"], contacts["y"]

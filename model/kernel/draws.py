@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from kswarms.agents.common.jit import compiled
+from kswarms.agents.common.jit import compiled, compiled_inner
 from kswarms.agents.streams import Purpose, Words, seed_words
 
 _MULTIPLIER_HIGH: Final = np.uint64(0x2360ED051FC65DA4)
@@ -39,7 +39,7 @@ def _start(streams: Words) -> None:
         _step(streams, robot)
 
 
-@compiled
+@compiled_inner
 def _step(streams: Words, robot: int) -> None:
     """Multiply a state by the constant of the generator and add its increment, modulo 2¹²⁸."""
     high, low = streams[robot, 0], streams[robot, 1]

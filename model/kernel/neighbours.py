@@ -7,7 +7,7 @@ moved farther than half the skin. Grid and list are rebuilt then.
 import math
 
 from kswarms.agents.common.arrays import Floats
-from kswarms.agents.common.jit import compiled
+from kswarms.agents.common.jit import compiled_inner
 from kswarms.model.kernel.arrays import Memory, Pairs
 
 
@@ -18,13 +18,13 @@ def room_for_pairs(n: int, reach: float, radius: float) -> int:
     return min(n * crowd, n * (n - 1) // 2 + 1) + 1  # the last element is for a pair that is not near
 
 
-@compiled
+@compiled_inner
 def cell_of(coordinate: float, half: float, cells: int) -> int:
     """Return the row or column of a coordinate in the grid."""
     return min(cells - 1, max(0, int((coordinate + half) * cells / (2.0 * half))))
 
 
-@compiled
+@compiled_inner
 def refresh(m: Memory) -> bool:
     """Rebuild cells and pairs if a body has moved too far since the last rebuild; return whether it did.
 
@@ -48,7 +48,7 @@ def refresh(m: Memory) -> bool:
     return True
 
 
-@compiled
+@compiled_inner
 def _sort_into_cells(m: Memory, cells: int) -> None:
     x, y, cell = m.bodies.x, m.bodies.y, m.work.cell
     cell_start, cell_robots, half = m.cell_start, m.work.cell_robots, m.scalars["half"][0]
@@ -69,7 +69,7 @@ def _sort_into_cells(m: Memory, cells: int) -> None:
     cell_start[cells * cells] = n
 
 
-@compiled
+@compiled_inner
 def _list_pairs(m: Memory, cells: int) -> int:
     """List the pairs and return their number."""
     x, y, cell = m.bodies.x, m.bodies.y, m.work.cell
@@ -97,7 +97,7 @@ def _list_pairs(m: Memory, cells: int) -> int:
     return size
 
 
-@compiled
+@compiled_inner
 def list_close(x: Floats, y: Floats, pairs: Pairs, n_pairs: int, reach: float) -> int:
     """List the pairs closer than `reach` (m) as close pairs; return their number.
 
@@ -118,7 +118,7 @@ def list_close(x: Floats, y: Floats, pairs: Pairs, n_pairs: int, reach: float) -
     return size
 
 
-@compiled
+@compiled_inner
 def within(m: Memory, own_x: float, own_y: float, distance: float) -> int:
     """List the robots within `distance` of a point (m) in ``m.work.found``; return their number.
 

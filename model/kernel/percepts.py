@@ -7,14 +7,14 @@ import math
 
 from kswarms.agents.body import SENSORS
 from kswarms.agents.common.arrays import Floats
-from kswarms.agents.common.jit import compiled
+from kswarms.agents.common.jit import compiled_inner
 from kswarms.agents.robot.sensing import sense, walls_met, wrap
 from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, HOMING_ERROR, LEG, LEG_OVER, TURN
 from kswarms.model.kernel.arrays import CONFLICT, DEPOSIT, HOMING, LEG_DUE, PICK_UP, TURN_DUE, WALL, Memory
 from kswarms.model.kernel.neighbours import within
 
 
-@compiled
+@compiled_inner
 def find_pucks(m: Memory) -> int:
     """Find empty robots at stations with pucks, and robots with a puck at their base.
 
@@ -48,7 +48,7 @@ def find_pucks(m: Memory) -> int:
     return size
 
 
-@compiled
+@compiled_inner
 def _look_ahead(m: Memory) -> None:
     """Find the nearest robot ahead of each robot within the conflict distance.
 
@@ -87,7 +87,7 @@ def _look_ahead(m: Memory) -> None:
             squares[j] = squared
 
 
-@compiled
+@compiled_inner
 def perceive(m: Memory) -> int:
     """Find the event of each robot, the first that applies: conflict, home, wall, turn, leg.
 
@@ -149,7 +149,7 @@ def perceive(m: Memory) -> int:
     return size
 
 
-@compiled
+@compiled_inner
 def _read_ring(free: Floats, flight_range: float, active_range: float) -> tuple[int, int]:
     """Return the number of active sensors, and the most vacant directions (a bit per sensor)."""
     most = -math.inf

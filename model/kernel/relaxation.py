@@ -9,7 +9,7 @@ import math
 from typing import Final
 
 from kswarms.agents.common.arrays import Floats, Integers
-from kswarms.agents.common.jit import compiled
+from kswarms.agents.common.jit import compiled, compiled_inner
 from kswarms.model.kernel.arrays import Pairs, Work
 from kswarms.model.kernel.neighbours import list_close
 
@@ -116,17 +116,17 @@ def _reset(work: Work) -> None:
         work.touches[i] = 0
 
 
-@compiled
+@compiled_inner
 def _offset(x: Floats, y: Floats, i: int, j: int) -> tuple[float, float]:
     return x[j] - x[i], y[j] - y[i]
 
 
-@compiled
+@compiled_inner
 def _overlap(dx: float, dy: float, radius: float) -> bool:
     return dx * dx + dy * dy < (2.0 * radius - _TOUCH) ** 2
 
 
-@compiled
+@compiled_inner
 def _bend(x: Floats, y: Floats, radius: float, work: Work, pairs: Pairs, n_close: int) -> None:
     """Rotate each overlapping pair slightly about its centre, all in the same sense, to break the row."""
     close_first, close_second = pairs.close_first, pairs.close_second
@@ -142,7 +142,7 @@ def _bend(x: Floats, y: Floats, radius: float, work: Work, pairs: Pairs, n_close
             shove_y[j] += _TURN * dx
 
 
-@compiled
+@compiled_inner
 def _forget_resting(x: Floats, y: Floats, radius: float, work: Work, pairs: Pairs, n_close: int) -> int:
     """Keep the close pairs that overlap or move; return their number."""
     close_first, close_second = pairs.close_first, pairs.close_second
@@ -187,7 +187,7 @@ def _measure_overlaps(
     return n_overlaps, worst
 
 
-@compiled
+@compiled_inner
 def _list_overlaps(x: Floats, y: Floats, radius: float, pairs: Pairs, n_close: int) -> int:
     """List the close pairs that overlap, as `list_close` does; return their number."""
     close_first, close_second = pairs.close_first, pairs.close_second
@@ -229,7 +229,7 @@ def _move_all(x: Floats, y: Floats, limit: float, work: Work, momentum: float) -
         work.touches[i] = 0
 
 
-@compiled
+@compiled_inner
 def _move_along(
     place: Floats, move: Floats, shove: Floats, touches: Integers, limit: float, momentum: float
 ) -> None:

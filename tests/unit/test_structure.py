@@ -1,5 +1,6 @@
 """Layout: small files, small folders, one import package. `make lint` checks the direction of imports."""
 
+import ast
 import subprocess
 import sys
 from pathlib import Path
@@ -47,3 +48,28 @@ def test_lint_refuses_bare_package_names(line: str) -> None:
     found = subprocess.run(command, input=f"{line}\n", cwd=ROOT, capture_output=True, text=True)
     assert found.returncode == 1
     assert "TID251" in found.stdout
+
+
+def test_only_compiled_functions_call_inner_compiled_functions() -> None:
+    folders = (*PACKAGES, "tests", "benchmarks")
+    files = [path.relative_to(ROOT) for folder in folders for path in (ROOT / folder).rglob("*.py")]
+    modules = {path: ast.parse((ROOT / path).read_text(encoding="utf-8")).body for path in files}
+    inner = {
+        f"kswarms.{'.'.join(path.with_suffix('').parts)}.{node.name}"
+        for path, module in modules.items()
+        for node in module
+        if isinstance(node, ast.FunctionDef) and "compiled_inner" in decorators(node)
+    }
+    assert "kswarms.model.kernel.percepts.perceive" in inner
+    for path, module in modules.items():
+        own = f"kswarms.{'.'.join(path.with_suffix('').parts)}"
+        imports = [node for node in module if isinstance(node, ast.ImportFrom)]
+        places = {name.name: node.module for node in imports for name in node.names}
+        for node in module:
+            if not decorators(node) & {"compiled", "compiled_inner"}:
+                called = {ast.unparse(each.func) for each in ast.walk(node) if isinstance(each, ast.Call)}
+                assert {f"{places.get(name, own)}.{name}" for name in called} & inner == set()
+
+
+def decorators(node: ast.stmt) -> set[str]:
+    return {ast.unparse(each) for each in getattr(node, "decorator_list", ())}
