@@ -54,7 +54,7 @@ def place_robots(game: Game, arena: Arena, seed: int, random: Random) -> tuple[R
 def make_robots(model: Host, game: Game, seed: int) -> list[Krembot]:
     """Make the robots of all swarms, each with its policy and random streams."""
     step = game.parameters.period * game.body.top_speed
-    actions, swarms = model.actions, len(game.swarms)
+    actions, swarms, gamma = model.actions, len(game.swarms), game.parameters.gamma
     robots: list[Krembot] = []
     seeds = Seeds(seed, game.size)
     for k, swarm in enumerate(game.swarms):
@@ -70,7 +70,7 @@ def make_robots(model: Host, game: Game, seed: int) -> list[Krembot]:
                 model,
                 number,
                 k,
-                factories[spec](Setting(k, swarms, actions, streams, place)),
+                factories[spec](Setting(k, swarms, actions, streams, place, gamma)),
                 str(spec),
                 streams,
                 stride_program=step * swarm.drive,

@@ -6,7 +6,7 @@ user-defined. All robots of a policy share one rule object; learned values are i
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from functools import partial
+from functools import lru_cache, partial
 from math import log, sqrt
 from typing import Final
 
@@ -17,6 +17,8 @@ from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.learning.bandit import Bandit
 from kswarms.agents.user_code.syntax import build
 
+GAMMA: Final = 0.1211
+"""γ of UCB (Eq. 4.16) in a game without its own value."""
 FORGOTTEN: Final = 1e-12  # an arm with a smaller discounted count is treated as untried
 
 
@@ -27,6 +29,10 @@ class Rule(FrozenModel, ABC):
     def factor(self) -> float:
         """Factor by which each new conflict of a bandit discounts its earlier ones; 1 for no discounting."""
         return 1.0
+
+    def in_game(self, gamma: float) -> "Rule":  # for rules with a γ
+        """Return the rule with γ of the game's parameters, unless it has none or its own."""
+        return self
 
     def choose(self, bandit: Bandit, rng: Generator) -> int:
         """Return the arm to pull, from 0; `rng` is the robot's stream for exploration."""
@@ -55,11 +61,20 @@ class Rule(FrozenModel, ABC):
 class UCB(Rule):
     """Upper confidence bound: argmax Q(a) + sqrt(γ ln N / N(a)) (Eq. 4.16)."""
 
-    gamma: float = Field(0.1211, ge=0)  # γ, the weight of exploration
+    gamma: float | None = Field(None, ge=0)  # γ, the weight of exploration; None for that of the game
+
+    @property
+    def weight(self) -> float:
+        """γ."""
+        return GAMMA if self.gamma is None else self.gamma
+
+    def in_game(self, gamma: float) -> Rule:
+        """Return the rule with this γ, unless it has its own."""
+        return _with_gamma(self, gamma) if self.gamma is None else self
 
     def bounds(self, bandit: Bandit) -> list[float]:
         """Return Q(a) + sqrt(γ ln N / N(a)) of each arm, all of which must have been tried."""
-        scale = self.gamma * log(sum(bandit.count))
+        scale = self.weight * log(sum(bandit.count))
         return [
             reward / time + sqrt(scale / count)
             for reward, time, count in zip(bandit.reward, bandit.time, bandit.count)  # noqa: B905  # same length
@@ -74,7 +89,7 @@ class UCB(Rule):
         kind = type(self)
         if (kind.choose, kind.prefer, kind.bounds) != (UCB.choose, UCB.prefer, UCB.bounds):
             return self.choose
-        return partial(_choose_of_two, self.gamma, self.choose)
+        return partial(_choose_of_two, self.weight, self.choose)
 
 
 class DiscountedUCB(UCB):
@@ -139,6 +154,11 @@ def make_rule(rule: str | Rule) -> Rule:
     A text is the name of one of `RULES` or a user-defined subclass of `Rule`, with arguments.
     """
     return rule if isinstance(rule, Rule) else build("rule", rule, RULES, Rule)
+
+
+@lru_cache(maxsize=64)  # the robots of a swarm share one rule
+def _with_gamma(rule: UCB, gamma: float) -> UCB:
+    return rule.replace(gamma=gamma)
 
 
 def _choose_of_two(

@@ -10,6 +10,7 @@ from typing import NamedTuple, Protocol
 
 from kswarms.agents.actions import Action
 from kswarms.agents.common.errors import InputError
+from kswarms.agents.learning.selection_rules import GAMMA
 from kswarms.agents.streams import Streams
 
 
@@ -28,6 +29,8 @@ class Setting(NamedTuple):
         The robot's random streams.
     place : int
         Number of the robot within its swarm, from 0.
+    gamma : float
+        γ of `UCB` for rules without their own.
     """
 
     swarm: int
@@ -35,6 +38,7 @@ class Setting(NamedTuple):
     actions: Sequence[Action]
     streams: Streams
     place: int = 0
+    gamma: float = GAMMA
 
     def first(self, direction: int) -> Action:
         """Return the first action of a direction, `AWAY` or `TOWARDS`.

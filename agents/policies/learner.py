@@ -72,7 +72,7 @@ class Learner:
                 raise InputError("otherwise", otherwise, f"must be one of {', '.join(by_name)}")
             self._otherwise = by_name[otherwise]
         self.reward = make_reward(reward)
-        self.rule = make_rule(rule)
+        self.rule = make_rule(rule).in_game(setting.gamma)
         with user_errors("rule", type(self.rule).__qualname__, "factor"):
             self._factor = self.rule.factor
         self.bandits = {

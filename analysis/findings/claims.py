@@ -128,7 +128,7 @@ class Agreement(_ClaimAtDensities):
     Attributes
     ----------
     cells : tuple of Quantity
-        Columns of Tables 6.1 and 6.2 (`published.learned_percentages`); each has a cell for each density.
+        Columns of Tables 6.1 to 6.3 (`published.learned_percentages`); each has a cell for each density.
     margin : float
         Maximum mean absolute error of the cells (percentage points).
     """
@@ -141,7 +141,7 @@ class Agreement(_ClaimAtDensities):
     def _check_measures(self) -> Self:
         if any(cell.measure not in LEARNED for cell in self.cells):
             given = [cell.measure for cell in self.cells]
-            raise InputError("cells", given, "must be columns of Tables 6.1 and 6.2: learned shares")
+            raise InputError("cells", given, "must be columns of Tables 6.1 to 6.3: learned shares")
         return self
 
 

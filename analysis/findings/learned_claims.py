@@ -60,10 +60,10 @@ def judge_agreement(claim: Agreement, data: ClaimData, confidence: float) -> Out
 
 def _published(claim: Agreement, densities: Sequence[int]) -> Values:
     """Return the published cells, shape (densities, columns), NaN where there is none."""
-    table = learned_percentages().set_index(["scenario", "learned", "n"])["published"]
+    table = learned_percentages().set_index(["scenario", "condition", "learned", "n"])["published"]
     columns = []
     for cell in claim.cells:
         learned = "attack" if cell.measure == "learned_attack" else "flight within"
-        keys = [(cell.scenario, learned, n) for n in densities]
+        keys = [(cell.scenario, cell.condition, learned, n) for n in densities]
         columns.append(table.reindex(pd.MultiIndex.from_tuples(keys)).to_numpy(dtype=np.float64))
     return np.stack(columns, axis=-1)

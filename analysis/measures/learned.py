@@ -48,7 +48,7 @@ def learned_shares(policies: pd.DataFrame, scenarios: Sequence[str]) -> pd.DataF
         percent=100 * rows["attack_share"].where(~within, 1 - rows["attack_share"]),
     )
     cells = mean_by_group(rows, [*_CELL, "learned"], "percent").rename(columns={"mean": "measured"})
-    cells = cells.merge(learned_percentages(), how="left", on=["scenario", "learned", "n"])
+    cells = cells.merge(learned_percentages(), how="left", on=["scenario", "condition", "learned", "n"])
     cells["error"] = cells["measured"] - cells["published"]
     cells["order"] = cells["scenario"].map(list(scenarios).index)
     cells = cells.sort_values(["order", *_CELL], ignore_index=True)

@@ -19,6 +19,7 @@ from kswarms.agents.common.limits import (
     SLOWEST,
     SMALLEST_ANGLE,
 )
+from kswarms.agents.learning.selection_rules import GAMMA
 
 
 class Parameters(FrozenModel):
@@ -66,6 +67,8 @@ class Parameters(FrozenModel):
         Minimum gaps between bodies, and to the walls, at the start (m).
     preempt : bool
         Whether another robot ahead interrupts an action.
+    gamma : float
+        γ, the weight of exploration in UCB (Eq. 4.16), for rules without their own.
     """
 
     period: float = Field(0.1, ge=SHORTEST_TIME, le=LONGEST_PERIOD)
@@ -89,6 +92,7 @@ class Parameters(FrozenModel):
     clearance: float = Field(0.01, ge=0, le=LONGEST_DISTANCE)
     wall_clearance: float = Field(0.005, ge=0, le=LONGEST_DISTANCE)
     preempt: bool = False
+    gamma: float = Field(GAMMA, ge=0)
 
     def actions(self) -> tuple[Action, Action]:
         """Return the two standard actions: flight and fight."""

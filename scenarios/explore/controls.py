@@ -143,7 +143,8 @@ def _swarm(session: Session, k: int, act: Act) -> None:
 
 
 def _learning(session: Session, change: Callable[..., None], act: Act) -> None:
-    learning = learning_of([swarm["policy"] for swarm in session.form.swarms])
+    form = session.form
+    learning = learning_of([swarm["policy"] for swarm in form.swarms], form.fields["parameters"])
     if learning is None:
         return
 

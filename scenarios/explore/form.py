@@ -74,23 +74,33 @@ class Learning(NamedTuple):
     gamma: float | None  # None if the rule has no γ
 
 
-def learning_of(policies: list[str]) -> Learning | None:
-    """Return reward and rule of the first learner among policies; None if no learner can be parsed."""
+def learning_of(policies: list[str], parameters: str) -> Learning | None:
+    """Return reward and rule of the first learner among policies; None if no learner can be parsed.
+
+    A rule without its own γ has that of the parameters of the game.
+    """
     for policy in policies:
         try:
             for spec in parse_policies(policy):
                 reward, rule = spec.learner_part("reward"), spec.learner_part("rule")
                 if reward is not None and rule is not None:
                     delta = _argument(reward, REWARDS, "delta")
-                    gamma = _argument(rule, RULES, "gamma")
+                    gamma = _argument(rule, RULES, "gamma", parse_parameters(parameters).gamma)
                     return Learning(reward.name, rule.name, delta, gamma)
         except InputError:
             continue
     return None
 
 
-def _argument(call: Call, kinds: Mapping[str, type[FrozenModel]], name: str) -> float | None:
-    """Return a number that a call has as argument, or its default; None if it has no such number."""
+def _argument(
+    call: Call, kinds: Mapping[str, type[FrozenModel]], name: str, default: float | None = None
+) -> float | None:
+    """Return a number that a call has as argument, or its default; None if it has no such number.
+
+    `default` replaces a default of None.
+    """
     fields = kinds[call.name].model_fields if call.name in kinds else {}
-    value = call.arguments.get(name, fields[name].default) if name in fields else None
+    if name not in fields:
+        return None
+    value = call.arguments.get(name, default if fields[name].default is None else fields[name].default)
     return float(value) if isinstance(value, int | float) else None

@@ -66,7 +66,7 @@ class Mutable(UCB):
     model_config = {"frozen": False}
 
     def prefer(self, bandit: Bandit, rng: Generator) -> int:
-        self.gamma += 0.1
+        self.gamma = self.weight + 0.1
         return super().prefer(bandit, rng)
 
 

@@ -9,7 +9,7 @@ pytest.importorskip("solara", reason="needs the extra `explore`")
 
 import ipyvuetify  # comes with solara
 
-from kswarms.agents.learning.selection_rules import UCB
+from kswarms.agents.learning.selection_rules import GAMMA
 from tests.helpers.rendered_page import RenderedPage, unfold, wait
 
 
@@ -23,7 +23,7 @@ def test_learning_can_be_skipped_and_its_controls_change_it(show: Callable[[str]
     wait(lambda: shown.arena().frame["time"] == 0.0)
     wait(lambda: "Skip learning" not in shown.texts())
     shown.find(ipyvuetify.Slider, "Δ = 0.125").v_model = 0.2
-    shown.find(ipyvuetify.Slider, f"γ = {UCB().gamma:g}").v_model = 0.5
+    shown.find(ipyvuetify.Slider, f"γ = {GAMMA:g}").v_model = 0.5
     policy = "inter-learner(reward='wlu(delta=0.2)', rule='ucb(gamma=0.5)')"
     assert session.player.game.swarms[1].policy == policy
     shown.find(ipyvuetify.Select, "Reward").v_model = "individual"

@@ -17,7 +17,7 @@ pytest.importorskip("solara", reason="needs the extra `explore`")
 import ipyvuetify  # comes with solara
 
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.learning.selection_rules import UCB
+from kswarms.agents.learning.selection_rules import GAMMA, UCB
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.cli import invoke
 from kswarms.scenarios.explore import page
@@ -96,7 +96,7 @@ def test_a_robot_can_be_selected_and_inspected(show: Callable[[str], RenderedPag
     assert facts.rows[0] == ["robot", "10 of S2, inter-learner"]
     assert len(sensors.rows[0]) == 8
     assert [row[0] for row in bandit.rows] == ["flight", "fight"]
-    assert f"{UCB()!r}; learns" in shown.texts()
+    assert f"{UCB(gamma=GAMMA)!r}; learns" in shown.texts()
     shown.arena().vue_select(0)
     assert (session.selected, shown.arena().frame["selected"]) == (0, 0)
     assert shown.tables()[0].rows[0] == ["robot", "0 of S1, attack"]

@@ -1,12 +1,14 @@
 """Published numbers for comparison with the simulator, as package data.
 
-`table-6.1.csv` and `table-6.2.csv` are tables of the thesis; `argos_fixed_policies.csv` holds games of the
+`table-6.1.csv` to `table-6.3.csv` are tables of the thesis; `argos_fixed_policies.csv` holds games of the
 same controller in ARGoS 3 (time-limited, 600 s, ten seeds at each density).
 """
 
 from importlib.resources import files
 
 import pandas as pd
+
+_DELTAS = ("0.02", "0.08", "0.125", "0.2", "0.25")
 
 
 def _read_csv(name: str) -> pd.DataFrame:
@@ -32,24 +34,35 @@ def table_6_2() -> pd.DataFrame:
     return _read_csv("table-6.2.csv")
 
 
-def learned_percentages() -> pd.DataFrame:
-    """Return Tables 6.1 and 6.2 as one table.
+def table_6_3() -> pd.DataFrame:
+    """Return Table 6.3: robots that learned to attack an attacking swarm (Fig. 6.12), for each density.
 
-    Forty rows. `scenario` (str): id of the figure; `learned` (str): ``attack`` (the other swarm) or
-    ``flight within`` (the own swarm); `n` (int64): robots in all; `published` (float64): percent of the
-    learning swarm's robots.
+    Ten rows. `n` (int64): robots in all; `d0.02` … `d0.25` (float64): percent of the learning swarm's
+    robots, for each Δ.
+    """
+    return _read_csv("table-6.3.csv")
+
+
+def learned_percentages() -> pd.DataFrame:
+    """Return Tables 6.1, 6.2 and 6.3 as one table.
+
+    Ninety rows. `scenario`, `condition` (str): curve of the figure; `learned` (str): ``attack`` (the other
+    swarm) or ``flight within`` (the own swarm); `n` (int64): robots in all; `published` (float64): percent
+    of the learning swarm's robots.
     """
     attack, within = "attack", "flight within"
     columns = [
-        (table_6_1(), "fig_6_4a_attack_pct", "fig-6.4a", attack),
-        (table_6_1(), "fig_6_4b_attack_pct", "fig-6.4b", attack),
-        (table_6_2(), "inter_attack_pct", "fig-6.8", attack),
-        (table_6_2(), "intra_avoid_pct", "fig-6.8", within),
+        (table_6_1(), "fig_6_4a_attack_pct", "fig-6.4a", "", attack),
+        (table_6_1(), "fig_6_4b_attack_pct", "fig-6.4b", "", attack),
+        (table_6_2(), "inter_attack_pct", "fig-6.8", "", attack),
+        (table_6_2(), "intra_avoid_pct", "fig-6.8", "", within),
+        *((table_6_3(), f"d{delta}", "fig-6.12", f"delta={delta}", attack) for delta in _DELTAS),
     ]
-    return pd.concat(
-        pd.DataFrame({"scenario": scenario, "learned": learned, "n": table["n"], "published": table[column]})
-        for table, column, scenario, learned in columns
-    )
+    parts = []
+    for table, column, scenario, condition, learned in columns:
+        curve = {"scenario": scenario, "condition": condition, "learned": learned}
+        parts.append(pd.DataFrame({**curve, "n": table["n"], "published": table[column].astype("float64")}))
+    return pd.concat(parts, ignore_index=True)
 
 
 def argos_fixed_policies() -> pd.DataFrame:

@@ -13,6 +13,7 @@ from scipy.stats import chisquare
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.learning.bandit import Bandit
 from kswarms.agents.learning.selection_rules import (
+    GAMMA,
     RULES,
     UCB,
     DiscountedUCB,
@@ -201,9 +202,16 @@ def test_discounted_ucb_equals_its_definition_over_the_whole_history(discount: f
     assert min(Counter(arms).values()) > 5
 
 
-def test_defaults_are_the_fitted_values() -> None:
-    assert UCB() == UCB(gamma=0.1211)
-    assert DiscountedUCB() == DiscountedUCB(gamma=0.1211, discount=0.99)
+def test_a_rule_without_its_own_weight_of_exploration_has_that_of_the_game() -> None:
+    for rule in (UCB(), DiscountedUCB(discount=0.9)):
+        assert rule.weight == GAMMA
+        assert rule.in_game(0.3) == rule.replace(gamma=0.3)
+        assert rule.in_game(0.3).in_game(0.2).weight == 0.3
+    assert Greedy().in_game(0.3) == Greedy()
+
+
+def test_defaults_of_the_rules() -> None:
+    assert DiscountedUCB().discount == 0.99
     assert {name for name, rule in RULES.items() if rule().factor != 1.0} == {"discounted-ucb"}
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from kswarms.agents.learning.rewards import WLU
-from kswarms.agents.learning.selection_rules import UCB
+from kswarms.agents.learning.selection_rules import GAMMA
 from kswarms.agents.policies.learner import Learner
 from kswarms.agents.policies.registry import POLICIES
 from kswarms.model.description.game import Game, Swarm
@@ -185,7 +185,7 @@ def test_the_rewards_of_the_table_follow_from_its_times(played: GameModel) -> No
 
 def test_every_choice_follows_from_all_closed_conflicts(played: GameModel) -> None:
     """Recompute each choice from the earlier rows of the table (Eqs. 4.15, 4.16), untried arms first."""
-    gamma = 0.0 if "greedy" in played.game.swarms[1].policy else UCB().gamma
+    gamma = 0.0 if "greedy" in played.game.swarms[1].policy else GAMMA
     redone = 0
     for robot, rows in learned_rows(played):
         for k, row in enumerate(rows):

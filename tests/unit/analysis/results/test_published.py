@@ -2,7 +2,13 @@
 
 import pytest
 
-from kswarms.analysis.results.published import argos_fixed_policies, learned_percentages, table_6_1, table_6_2
+from kswarms.analysis.results.published import (
+    argos_fixed_policies,
+    learned_percentages,
+    table_6_1,
+    table_6_2,
+    table_6_3,
+)
 
 DENSITIES = [6, 10, 16, 20, 26, 30, 36, 40, 46, 50]
 
@@ -23,14 +29,24 @@ def test_table_6_2_has_the_published_numbers() -> None:
     assert table["intra_avoid_pct"].min() == 99.4
 
 
-def test_the_learned_percentages_combine_both_tables() -> None:
-    both = learned_percentages()
-    columns = both.set_index(["scenario", "learned", "n"])["published"]
-    assert len(columns) == 40
-    assert columns["fig-6.4a", "attack"].tolist() == table_6_1()["fig_6_4a_attack_pct"].tolist()
-    assert columns["fig-6.4b", "attack", 36] == 26.3
-    assert columns["fig-6.8", "attack", 40] == 71.25
-    assert columns["fig-6.8", "flight within", 50] == 99.4
+def test_table_6_3_has_the_published_numbers() -> None:
+    table = table_6_3()
+    assert list(table.columns) == ["n", "d0.02", "d0.08", "d0.125", "d0.2", "d0.25"]
+    assert list(table["n"]) == DENSITIES
+    assert table["d0.02"].max() == 0
+    assert list(table["d0.125"]) == [1.6, 1, 2.5, 2, 11.5, 33.3, 51.1, 49.25, 58.2, 56.4]
+    assert list(table["d0.25"]) == [8.3, 18, 29.3, 35.5, 47.6, 57.6, 65, 64, 72.6, 78.4]
+
+
+def test_the_learned_percentages_combine_all_tables() -> None:
+    table = learned_percentages()
+    columns = table.set_index(["scenario", "condition", "learned", "n"])["published"].sort_index()
+    assert len(columns) == 90
+    assert columns["fig-6.4a", "", "attack"].tolist() == table_6_1()["fig_6_4a_attack_pct"].tolist()
+    assert columns["fig-6.4b", "", "attack", 36] == 26.3
+    assert columns["fig-6.8", "", "attack", 40] == 71.25
+    assert columns["fig-6.8", "", "flight within", 50] == 99.4
+    assert columns["fig-6.12", "delta=0.2", "attack", 46] == 69.1
 
 
 def test_there_are_ten_argos_games_of_each_kind_with_600_s_for_each_robot() -> None:

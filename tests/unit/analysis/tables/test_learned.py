@@ -79,14 +79,14 @@ def test_the_mean_absolute_error_covers_the_published_cells() -> None:
 def test_the_published_numbers_have_no_error() -> None:
     published = learned_percentages()
     made = {
-        (scenario, "", 2 if kind == "flight within" else 1): {
+        (scenario, condition, 2 if kind == "flight within" else 1): {
             int(n): [percent / 100 if kind == "attack" else 1 - percent / 100]
             for n, percent in zip(rows["n"], rows["published"], strict=True)
         }
-        for (scenario, kind), rows in published.groupby(["scenario", "learned"])
+        for (scenario, condition, kind), rows in published.groupby(["scenario", "condition", "learned"])
     }
-    cells = learned_shares(policies(made), ["fig-6.4a", "fig-6.4b", "fig-6.8"])
-    assert len(cells) == len(published) == 40
+    cells = learned_shares(policies(made), ["fig-6.4a", "fig-6.4b", "fig-6.8", "fig-6.12"])
+    assert len(cells) == len(published) == 90
     assert mean_absolute_error(cells) == pytest.approx(0)
 
 
@@ -113,9 +113,9 @@ def test_the_table_shows_published_beside_measured_numbers() -> None:
 
 
 def test_the_table_without_published_numbers() -> None:
-    made = policies({("fig-6.12", "delta=0.25", 1): {6: [0.5]}, ("fig-6.12", "delta=0.02", 1): {6: [0.25]}})
-    table = learned_table(learned_shares(made, ["fig-6.12"]))
-    assert table.header == ["N", "delta=0.02\nmeasured", "delta=0.25\nmeasured"]
+    made = policies({("fig-6.14", "ucb", 1): {6: [0.5]}, ("fig-6.14", "greedy", 1): {6: [0.25]}})
+    table = learned_table(learned_shares(made, ["fig-6.14"]))
+    assert table.header == ["N", "greedy\nmeasured", "ucb\nmeasured"]
     assert table.rows == [["6", "25.0", "50.0"]]
     assert table.caption == "percent of the learning swarm's robots; one seed"
 

@@ -112,7 +112,7 @@ def test_an_invalid_text_is_refused(text: str, message: str) -> None:
     assert "\n" not in str(refusal.value)
 
 
-MAY_BE_ZERO = {"friction", "push_share", "clearance", "wall_clearance", "wall_half_angle"}
+MAY_BE_ZERO = {"friction", "push_share", "gamma", "clearance", "wall_clearance", "wall_half_angle"}
 NUMBERS = [name for name, field in Parameters.model_fields.items() if field.annotation is float]
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import pytest
 
 from kswarms.agents.learning.rewards import WLU, IndividualUtility, Reward, SingleSwarmWLU
-from kswarms.agents.learning.selection_rules import UCB, DiscountedUCB, Greedy, PeriodicRandom, Rule
+from kswarms.agents.learning.selection_rules import GAMMA, UCB, DiscountedUCB, Greedy, PeriodicRandom, Rule
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.learner import Learner
 from kswarms.agents.policies.spec import make_policy
@@ -185,7 +185,7 @@ def test_learners_have_the_opponents_reward_and_rule_of_the_source(
     expected = LEARNED.get((name, condition), Learned())
     assert isinstance(built, Learner)
     assert [opponent + 1 for opponent in built.bandits] == list(expected.about)
-    assert built.rule == expected.rule
+    assert built.rule == expected.rule.in_game(GAMMA)
     assert type(built.reward) is type(expected.reward)
     for opponent in expected.about:
         for t_a, t_p in ((1.0, 0.0), (0.0, 1.0)):
@@ -240,7 +240,7 @@ def test_the_single_swarm_has_a_curve_for_each_action_and_one_for_a_learner() ->
 
 
 def test_explicit_defaults_are_left_out_of_the_text() -> None:
-    plain = learner(reward=reward_of("wlu", delta=0.125, b=1.0), rule=rule_of("ucb", gamma=UCB().gamma))
+    plain = learner(reward=reward_of("wlu", delta=0.125, b=1.0), rule=rule_of("ucb", gamma=None))
     assert plain.policy == "inter-learner"
     assert reward_of(delta={1: 0.125, 3: 0.125}) == "wlu"
     assert reward_of(delta={1: 0.02, 3: 0.125}, b=7 / 6) == "wlu(delta={1: 0.02}, b=1.1666666666666667)"

@@ -73,4 +73,4 @@ def test_a_text_names_only_parameters_that_differ_from_the_preset() -> None:
 def test_the_controls_of_learning_show_the_first_learner(
     policies: list[str], seen: tuple[object, ...] | None
 ) -> None:
-    assert learning_of(policies) == seen
+    assert learning_of(policies, "fitted") == seen
