@@ -123,14 +123,15 @@ class Share(_ClaimAtDensities):
 
 
 class Agreement(_ClaimAtDensities):
-    """Learned shares agree with the published table.
+    """Learned shares agree with the published table, or scores with those of ARGoS.
 
     Attributes
     ----------
     cells : tuple of Quantity
-        Columns of Tables 6.1 to 6.3 (`published.learned_percentages`); each has a cell for each density.
+        Columns of Tables 6.1 to 6.3, or pucks of the scenarios ``argos-*`` (`published.published_cells`);
+        each has a cell for each density.
     margin : float
-        Maximum mean absolute error of the cells (percentage points).
+        Maximum mean absolute error of the cells (percentage points, or pucks).
     """
 
     kind: Literal["agree with the published table"] = "agree with the published table"
@@ -139,9 +140,12 @@ class Agreement(_ClaimAtDensities):
 
     @model_validator(mode="after")
     def _check_measures(self) -> Self:
-        if any(cell.measure not in LEARNED for cell in self.cells):
-            given = [cell.measure for cell in self.cells]
-            raise InputError("cells", given, "must be columns of Tables 6.1 to 6.3: learned shares")
+        given = [cell.measure for cell in self.cells]
+        scores = all(cell.measure == "pucks" and cell.scenario.startswith("argos-") for cell in self.cells)
+        if not scores and any(measure not in LEARNED for measure in given):
+            raise InputError(
+                "cells", given, "must be columns of Tables 6.1 to 6.3: learned shares, or pucks of ARGoS"
+            )
         return self
 
 

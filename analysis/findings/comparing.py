@@ -16,7 +16,7 @@ def judge_at_each(claim: Compare, data: ClaimData, confidence: float) -> Outcome
     It holds if the interval at each of k densities is inside the region, without correction. It fails if any
     interval with Bonferroni's correction for k is outside; Holm's correction rejects in the same cases.
     """
-    region = _region(claim)
+    region = region_of(claim)
     tables = {n: data.at([n]) for n in data.densities}
     samples = {n: difference(table)[:, 0] for n, table in tables.items() if len(table[0])}
     if not samples:
@@ -42,7 +42,7 @@ def judge_at_each(claim: Compare, data: ClaimData, confidence: float) -> Outcome
 
 def judge_over_all(claim: Compare, data: ClaimData, confidence: float) -> Outcome:
     """Judge a claim about the mean or the sum over the densities."""
-    region = _region(claim)
+    region = region_of(claim)
     differences = difference(data.complete())
     values = differences.mean(axis=1) if claim.over == "mean over N" else differences.sum(axis=1)
     interval = bootstrap_interval(values, confidence=confidence)
@@ -53,7 +53,7 @@ def judge_over_all(claim: Compare, data: ClaimData, confidence: float) -> Outcom
     return Outcome(verdict, interval, _unit(claim), len(values), notes)
 
 
-def _region(claim: Compare) -> Region:
+def region_of(claim: Compare) -> Region:
     """Return the region of the difference, or of the left side if the right side is a number."""
     at = 0.0 if isinstance(claim.right, Quantity) else claim.right
     margin = claim.margin

@@ -12,7 +12,7 @@ from kswarms.analysis.findings.claims import Agreement, Share
 from kswarms.analysis.findings.data import ClaimData, NoDataError, format_densities, sizes
 from kswarms.analysis.findings.evidence import too_few_note
 from kswarms.analysis.findings.verdicts import Outcome, Region
-from kswarms.analysis.results.published import learned_percentages
+from kswarms.analysis.results.published import published_cells
 from kswarms.analysis.statistics.intervals import Interval, Values, bootstrap_interval
 
 
@@ -44,7 +44,7 @@ def judge_share(claim: Share, data: ClaimData, confidence: float) -> Outcome:
 
 def judge_agreement(claim: Agreement, data: ClaimData, confidence: float) -> Outcome:
     """Judge the mean absolute error of the cells of a published table."""
-    published = _published(claim, data.densities)
+    published = cells_of(claim, data.densities)
     if np.isnan(published).all():
         raise NoDataError(f"nothing published at {format_densities(data.densities)}")
     values = np.stack([table.to_numpy() for table in data.complete()], axis=-1)
@@ -55,15 +55,14 @@ def judge_agreement(claim: Agreement, data: ClaimData, confidence: float) -> Out
     interval = bootstrap_interval(values, mean_absolute_error, confidence)
     verdict = Region(-math.inf, claim.margin).verdict(interval)
     notes = [*data.notes, f"{np.isfinite(published).sum()} cells", too_few_note(len(values), confidence)]
-    return Outcome(verdict, interval, "percentage points", len(values), notes)
+    return Outcome(verdict, interval, claim.cells[0].unit_of_difference, len(values), notes)
 
 
-def _published(claim: Agreement, densities: Sequence[int]) -> Values:
+def cells_of(claim: Agreement, densities: Sequence[int]) -> Values:
     """Return the published cells, shape (densities, columns), NaN where there is none."""
-    table = learned_percentages().set_index(["scenario", "condition", "learned", "n"])["published"]
+    table = published_cells()
     columns = []
     for cell in claim.cells:
-        learned = "attack" if cell.measure == "learned_attack" else "flight within"
-        keys = [(cell.scenario, cell.condition, learned, n) for n in densities]
+        keys = [(cell.scenario, cell.condition, cell.swarm, cell.measure, n) for n in densities]
         columns.append(table.reindex(pd.MultiIndex.from_tuples(keys)).to_numpy(dtype=np.float64))
     return np.stack(columns, axis=-1)

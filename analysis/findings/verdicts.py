@@ -77,6 +77,10 @@ class Region:
         depths += [self.high - interval.high] if math.isfinite(self.high) else []
         return min(depths)
 
+    def distance(self, value: float) -> float:
+        """Return the distance of a value from the region, 0 inside."""
+        return max(0.0, self.low - value, value - self.high)
+
     def nearest_bound(self, value: float) -> float:
         """Return the bound nearest to a value."""
         return self.low if abs(value - self.low) <= abs(value - self.high) else self.high

@@ -62,7 +62,7 @@ def overtaking(
     after which the first curve stays ahead. Resamples without such a crossing count as ±inf.
     """
     n, values = _samples(densities, differences)
-    last = bootstrap_interval(values, lambda means: _last_rise(n, means), confidence)
+    last = bootstrap_interval(values, lambda means: last_rise(n, means), confidence)
     return Overtaking(crossings(n, values.mean(axis=0)), last)
 
 
@@ -90,7 +90,7 @@ def spearman(first: Values, second: Values) -> Values:
     return correlation
 
 
-def _last_rise(n: Values, curves: Values) -> Values:
+def last_rise(n: Values, curves: Values) -> Values:
     """Return the N where each curve last rises above 0; `curves` has the shape (resamples, densities)."""
     above = curves > 0
     # Number of consecutive densities above 0 at the end of each curve.

@@ -1,1 +1,1 @@
-"""Calibration: a fit of the free parameters to Table 6.1."""
+"""Calibration: the worlds that are compatible with all targets."""

@@ -1,6 +1,6 @@
-"""``calibrate``: fit the free parameters."""
+"""``calibrate``: find the worlds that are compatible with all targets."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from contextlib import closing
 from functools import partial
 from pathlib import Path
@@ -11,71 +11,71 @@ import typer
 from kswarms.scenarios.cli.options import CPUS, Jobs, parse_path
 from kswarms.scenarios.cli.printing import print_line
 from kswarms.scenarios.cli.progress import play_tracked
-from kswarms.scenarios.description.text import parse_integers, split_words
+from kswarms.scenarios.description.text import split_words
+from kswarms.scenarios.runs.outcome import Outcome
 from kswarms.scenarios.runs.run import Run
 
 
 def calibrate(
+    targets: Annotated[
+        str, typer.Option(metavar="NAME|FILE", help="Built-in targets (chapter-6), or a TOML file.")
+    ] = "chapter-6",
     free: Annotated[
         str | None,
-        typer.Option(
-            metavar="NAME,...", help="At least two parameters of docs/calibration.md. [default: all]"
-        ),
+        typer.Option(metavar="NAME,...", help="Free parameters of docs/calibration.md. [default: all]"),
     ] = None,
-    densities: Annotated[
-        str | None,
-        typer.Option(
-            metavar="N,N,...", help="Rows of Table 6.1 to fit: 6,10,16,20,26,30,36,40,46,50. [default: all]"
-        ),
-    ] = None,
-    seeds: Annotated[
-        int, typer.Option(help="Games for each point and cell of the table, at least 1.")
-    ] = 4,
-    generations: Annotated[int, typer.Option(help="Generations of the search, at least 1.")] = 25,
-    population: Annotated[
-        int, typer.Option(help="Points (sets of values) in a generation, at least 4; 0: CMA-ES default.")
-    ] = 0,
-    validation_seeds: Annotated[
-        int, typer.Option(help="Games for each cell in the validation, at least 6.")
-    ] = 20,
+    size: Annotated[int, typer.Option(help="Worlds of the ensemble, at least 2.")] = 30,
+    tries: Annotated[int, typer.Option(help="Maximum number of worlds that a wave tries.")] = 512,
+    waves: Annotated[int, typer.Option(help="Maximum number of waves.")] = 6,
+    factor: Annotated[float, typer.Option(help="Factor on all tolerances in the first wave.")] = 3.0,
     jobs: Jobs = CPUS,
     out: Annotated[
         Path,
-        typer.Option(parser=parse_path, metavar="DIR", help="Output directory; a fit in it is resumed."),
+        typer.Option(
+            parser=parse_path, metavar="DIR", help="Output directory; a calibration in it is resumed."
+        ),
     ] = Path("calibration"),
     fresh: Annotated[
-        bool, typer.Option("--fresh", help="Delete the fit in DIR and start a new one.")
+        bool, typer.Option("--fresh", help="Delete the calibration in DIR and start a new one.")
     ] = False,
 ) -> None:
-    """Fit the free parameters to Table 6.1. The same command resumes an interrupted fit.
+    """Find an ensemble of worlds that meet all targets. The same command resumes an interrupted one.
 
-    Example: kswarms calibrate --free friction,gamma --densities 16,30,50 --seeds 2
+    Example: kswarms calibrate --free friction,gamma --size 10
     """
-    from kswarms.analysis.results.published import table_6_1
-    from kswarms.analysis.statistics.intervals import bootstrap_interval
-    from kswarms.scenarios.calibration import fit
+    from kswarms.analysis.findings.targets import read_targets
+    from kswarms.scenarios.calibration.calibration import Setup, Stage, calibrate
+    from kswarms.scenarios.calibration.directory import open_calibration
 
-    options: dict[str, Any] = {"seeds": seeds, "generations": generations, "population": population}
+    options: dict[str, Any] = {"size": size, "tries": tries, "waves": waves, "factor": factor}
     if free is not None:
         options["free"] = split_words(free)
-    if densities is not None:
-        options["densities"] = parse_integers("densities", densities)
-    setup = fit.Setup(**options, validation_seeds=validation_seeds)
-    table = table_6_1()
-    target = {
-        (opponent, int(n)): float(percent)
-        for opponent, column in (("avoid", "fig_6_4a_attack_pct"), ("attack", "fig_6_4b_attack_pct"))
-        for n, percent in zip(table["n"], table[column], strict=True)
-    }
-    report = partial(typer.echo, err=True)
-    trace = fit.calibrate(setup, target, partial(_play, jobs), bootstrap_interval, out, fresh, report)
-    for line in fit.summary(trace):
-        print_line(line)
-    print_line(f"trace:      {out / fit.TRACE}")
+    setup, chosen = Setup(**options), read_targets(targets)
+    stages = [
+        Stage(chosen.curves(number), seeds, partial(_judge, chosen.of_stage(number)))
+        for number, seeds in enumerate(chosen.seeds, 1)
+    ]
+    about = {"setup": setup.model_dump(mode="json"), "targets": chosen.model_dump(mode="json")}
+    directory = open_calibration(out, about, partial(_play, jobs), fresh)
+    for number, wave in enumerate(calibrate(setup, stages, directory.evidence), 1):
+        directory.write(wave)
+        print_line(
+            f"wave {number}: {len(wave['worlds'])} of {wave['tried']} worlds within {wave['factor']:.3g} times"
+            " the tolerances"
+        )
+    print_line(f"worlds: {directory.ensemble}")
 
 
-def _play(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, float], None, None]:
-    """Play runs with one learning swarm; yield each with the share of its robots that learned to attack."""
-    with closing(play_tracked(runs, jobs, "", "learning")) as played:
-        for run, outcome in played:
-            yield run, outcome.policies[0]["attack_share"]
+def _judge(targets: Sequence[Any], rows: Any) -> Mapping[str, float]:
+    """Return the implausibility of each target."""
+    import pandas as pd
+
+    from kswarms.analysis.results.runs import Results
+
+    results = Results(pd.DataFrame(rows.swarms), pd.DataFrame(rows.policies) if rows.policies else None)
+    return {target.id: target.implausibility(results) for target in targets}
+
+
+def _play(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, Outcome], None, None]:
+    with closing(play_tracked(runs, jobs, "", "calibrating")) as played:
+        yield from played

@@ -12,11 +12,11 @@ from kswarms.scenarios.study.database import LEDGER_FILE
 
 CONTRIBUTIONS_FILE: Final = "contribution.parquet"
 """Table of contributions."""
-SHARES_FILE: Final = "shares.json"
-"""Shares that a fit measured."""
+GAMES_FILE: Final = "games.jsonl"
+"""Results of the games of a calibration."""
 FIGURES: Final = "figures"
 """Folder of figures in a results directory."""
-_MARKS: Final = (LEDGER_FILE, CONTRIBUTIONS_FILE, SHARES_FILE)
+_MARKS: Final = (LEDGER_FILE, CONTRIBUTIONS_FILE, GAMES_FILE)
 """A directory is a results directory of kswarms if it has one of these files."""
 
 

@@ -65,6 +65,30 @@ def learned_percentages() -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
+def published_cells() -> pd.Series:
+    """Return all published numbers that a quantity can be compared with (float64).
+
+    The index has the levels `scenario`, `condition`, `swarm`, `measure` and `n`. The measures are the learned
+    percentages of Tables 6.1 to 6.3, and the pucks of the ARGoS games as means over the seeds.
+    """
+    tables = learned_percentages()
+    tables["measure"] = tables["learned"].map(
+        {"attack": "learned_attack", "flight within": "learned_flight_within"}
+    )
+    games = argos_fixed_policies()
+    games["scenario"] = "argos-" + games["s1_policy"] + "-" + games["s2_policy"]
+    means = games.groupby(["scenario", "n"])[["score1", "score2"]].mean().reset_index()
+    scores = [
+        means[["scenario", "n"]].assign(
+            swarm=swarm, condition="", measure="pucks", published=means[f"score{swarm}"]
+        )
+        for swarm in (1, 2)
+    ]
+    every = pd.concat([tables.assign(swarm=2), *scores], ignore_index=True)
+    index = pd.MultiIndex.from_frame(every[["scenario", "condition", "swarm", "measure", "n"]])
+    return pd.Series(every["published"].to_numpy("float64"), index).sort_index()
+
+
 def argos_fixed_policies() -> pd.DataFrame:
     """Return the games of two swarms with fixed policies in ARGoS 3.
 

@@ -1,0 +1,109 @@
+"""Targets of a calibration as data: claims, each with the tolerance up to which a world may miss it."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Final, Self
+
+from pydantic import Field, model_validator
+
+from kswarms.agents.common.descriptions import FrozenModel
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.input_files import read_toml, to_path
+from kswarms.analysis.findings.claims import Claim
+from kswarms.analysis.findings.discrepancy import discrepancy
+from kswarms.analysis.results.runs import Results
+
+BUILT_IN: Final = ("chapter-6",)
+"""Names of the targets that are package data."""
+
+
+class Target(FrozenModel):
+    """A claim that a world should meet.
+
+    Attributes
+    ----------
+    id : str
+        Short name.
+    claim : Claim
+        The claim, with its densities.
+    tolerance : float
+        The discrepancy up to which the claim counts as met, in the unit of the claim.
+    weight : float
+        Factor of the implausibility.
+    stage : int
+        From 1. A world is checked stage by stage and rejected at the first that it misses.
+    fitted : bool
+        If false, the target is only reported.
+    """
+
+    id: str = Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")
+    claim: Annotated[Claim, Field(discriminator="kind")]
+    tolerance: float = Field(gt=0)
+    weight: float = Field(default=1.0, gt=0)
+    stage: int = Field(default=1, ge=1)
+    fitted: bool = True
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if not self.claim.densities:
+            raise InputError("claim.densities", [], "must be given for a target")
+        return self
+
+    def implausibility(self, results: Results) -> float:
+        """Return weight · discrepancy / tolerance; a target is met up to 1."""
+        return self.weight * discrepancy(self.claim, results) / self.tolerance
+
+
+class Targets(FrozenModel):
+    """The targets of a calibration.
+
+    Attributes
+    ----------
+    name : str
+        Name of the set.
+    seeds : tuple of int
+        Number of games for each density and curve, by stage.
+    targets : tuple of Target
+        At least one for each stage.
+    """
+
+    name: str = Field(min_length=1)
+    seeds: tuple[Annotated[int, Field(ge=1, le=1000)], ...] = Field(min_length=1)
+    targets: tuple[Target, ...] = Field(min_length=1)
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        ids = [target.id for target in self.targets]
+        for name in ids:
+            if ids.count(name) > 1:
+                raise InputError("targets.id", name, "must be given once")
+        stages = {target.stage for target in self.targets if target.fitted}
+        if stages != set(range(1, len(self.seeds) + 1)):
+            rule = f"must be 1 to {len(self.seeds)}, as many as there are seeds, each with a fitted target"
+            raise InputError("targets.stage", sorted(stages), rule)
+        return self
+
+    def of_stage(self, stage: int) -> tuple[Target, ...]:
+        """Return the fitted targets of a stage."""
+        return tuple(target for target in self.targets if target.fitted and target.stage == stage)
+
+    def curves(self, stage: int) -> Mapping[tuple[str, str], tuple[int, ...]]:
+        """Return the densities that the fitted targets of a stage need, by scenario and condition."""
+        needed: dict[tuple[str, str], set[int]] = {}
+        for target in self.of_stage(stage):
+            for quantity in target.claim.quantities:
+                curve = quantity.scenario, quantity.condition
+                needed.setdefault(curve, set()).update(target.claim.densities)
+        return {curve: tuple(sorted(densities)) for curve, densities in needed.items()}
+
+
+def read_targets(name: str | Path) -> Targets:
+    """Read targets from a TOML file, or the built-in ones of a name.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, is not TOML, or has invalid or other content.
+    """
+    path = Path(__file__).with_name(f"{name}.toml") if name in BUILT_IN else to_path("targets", name)
+    return Targets(**read_toml("targets", path))

@@ -1,0 +1,112 @@
+"""Games of candidate worlds, and a file that keeps their results."""
+
+import json
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+from kswarms.agents.common.errors import InputError
+from kswarms.model.description.parameters import PRESETS, Parameters
+from kswarms.scenarios.catalogue import CATALOGUE
+from kswarms.scenarios.runs.outcome import Outcome
+from kswarms.scenarios.runs.run import Run, expand
+
+Curves = Mapping[tuple[str, str], Sequence[int]]
+"""Densities by scenario and condition."""
+Play = Callable[[Sequence[Run]], Generator[tuple[Run, Outcome], None, None]]
+"""Plays runs and yields each with its outcome, in any order."""
+
+CONTACTS: Final = ("friction", "push_share")
+"""Parameters of the contacts. The scenarios ``argos-*`` have these of a world; the others come with ARGoS."""
+
+
+class Rows(NamedTuple):
+    """Rows of ``runs.parquet`` and of ``policies.parquet``, as far as results are judged by them."""
+
+    swarms: list[dict[str, Any]]
+    policies: list[dict[str, Any]]
+
+
+def runs_of(world: Parameters, curves: Curves, first_seed: int, seeds: int) -> list[Run]:
+    """Return the runs of some curves of the catalogue in a world."""
+    scenarios = []
+    for (name, condition), densities in curves.items():
+        scenario = CATALOGUE[name]
+        chosen = [each for each in scenario.conditions if each.name == condition]
+        changed = tuple(each.replace(parameters=_in_world(each.parameters, world)) for each in chosen)
+        if not changed:
+            names = ", ".join(repr(each.name) for each in scenario.conditions)
+            raise InputError("condition", condition, f"must be one of {names} of {name}")
+        scenarios.append(
+            scenario.replace(conditions=changed, densities=tuple(densities), seeds=seeds, grid={})
+        )
+    return expand(scenarios, first_seed)
+
+
+def _in_world(own: Parameters, world: Parameters) -> Parameters:
+    """Return the parameters of a scenario in another world: what the scenario sets itself stays."""
+    argos = PRESETS["argos"]
+    if own == argos:
+        return argos.replace(**{name: getattr(world, name) for name in CONTACTS})
+    return world.replace(**{name: value for name, value in own if value != getattr(PRESETS["fitted"], name)})
+
+
+class Evidence:
+    """The outcomes of the games so far, one line of JSON for each.
+
+    A line that an interruption cut off is ignored. `play` plays the missing runs.
+    """
+
+    def __init__(self, path: Path, play: Play) -> None:
+        self._path, self._play = path, play
+        self._known: dict[str, Rows] = dict(_read(path))
+
+    def rows(self, plans: Sequence[Sequence[Run]]) -> list[Rows]:
+        """Return the rows of the runs of each plan, and play those that are missing."""
+        runs = {run.digest: run for plan in plans for run in plan}
+        if missing := [run for digest, run in runs.items() if digest not in self._known]:
+            self._add(missing)
+        return [_labelled(plan, self._known) for plan in plans]
+
+    def _add(self, runs: Sequence[Run]) -> None:
+        with closing(self._play(runs)) as played, self._path.open("a", encoding="utf-8") as file:
+            for run, outcome in played:
+                rows = Rows(*([_short(row) for row in of] for of in (outcome.swarms, outcome.policies)))
+                self._known[run.digest] = rows
+                file.write(json.dumps([run.digest, *rows], separators=(",", ":")) + "\n")
+                file.flush()
+
+
+_COLUMNS: Final = frozenset(
+    {"swarm", "size", "pucks", "sud", "t_a_intra", "t_a_inter", "t_p", "conflicts_intra", "conflicts_inter"}
+    | {"duration", "opponent", "attack_share"}
+)
+
+
+def _short(row: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in row.items() if name in _COLUMNS}
+
+
+def _labelled(plan: Iterable[Run], known: Mapping[str, Rows]) -> Rows:
+    rows = Rows([], [])
+    for run in plan:
+        for scenario, condition in run.labels:
+            label = {"scenario": scenario, "condition": condition, "n": run.n, "seed": run.seed}
+            for of_plan, of_run in zip(rows, known[run.digest], strict=True):
+                of_plan.extend({**label, **row} for row in of_run)
+    return rows
+
+
+def _read(path: Path) -> Generator[tuple[str, Rows], None, None]:
+    if not path.exists():
+        return
+    *lines, tail = path.read_text(encoding="utf-8").split("\n")
+    if tail:  # cut off by an interruption
+        path.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+    for line in lines:
+        try:
+            digest, swarms, policies = json.loads(line)
+            yield str(digest), Rows(list(swarms), list(policies))
+        except (ValueError, TypeError):
+            raise InputError("out", str(path.parent), f"has a {path.name} that is no file of games") from None
