@@ -23,6 +23,8 @@ class Bodies(NamedTuple):
     forward_y: Floats
     stride: Floats  # forward motion in a period (m), 0 while turning in place
     turn_rate: Floats  # change of heading in a period (rad), 0 while driving
+    moved_x: Floats  # displacement in the last period (m), without the relaxation of overlaps
+    moved_y: Floats
     swarm: Integers  # swarm, counted from 0
     phase: Integers  # one of the constants below
     carrying: Integers  # 1 with a puck, 0 without
@@ -63,7 +65,7 @@ class RobotStates:
     ----------
     positions : ndarray of float64, shape (n, 2)
         Centres (m). The array is shared with Mesa's space.
-    motion, roles : ndarray, shape (5, n) and (4, n)
+    motion, roles : ndarray, shape (7, n) and (4, n)
         The float and the integer fields of `Bodies` after `x` and `y`, one in each row. After a removal, only
         the first columns are in use.
     bodies : Bodies

@@ -62,7 +62,8 @@ class Parameters(FrozenModel):
     friction : float
         Coulomb coefficient of the contacts.
     push_share : float
-        Fraction of a blocked motion that shoves the standing body, 0 to 1.
+        Fraction of their common momentum that two robots in contact keep while their drives oppose each
+        other, 0 to 1. With 0 a standing robot is never pushed.
     clearance, wall_clearance : float
         Minimum gaps between bodies, and to the walls, at the start (m).
     preempt : bool
@@ -104,7 +105,7 @@ class Parameters(FrozenModel):
 
 PRESETS: Final = {
     "fitted": Parameters(),
-    # The controller of the ARGoS measurements; friction and push share are fitted to them.
+    # The controller of the ARGoS measurements and the friction of its engine; the push share is fitted.
     "argos": Parameters(
         conflict_distance=0.10,
         front_half_angle=math.radians(67.5),
@@ -121,8 +122,8 @@ PRESETS: Final = {
         station_radius=0.12,
         base_radius=0.12,
         base_range=0.667,
-        friction=0.45,
-        push_share=0.0,
+        friction=0.7,
+        push_share=1.0,
     ),
 }
 

@@ -53,9 +53,9 @@ class Pairs(NamedTuple):
 class Work(NamedTuple):
     """Working memory, arrays of length n, one element more for `Rows`."""
 
-    move_x: Floats  # displacement in this period
+    move_x: Floats  # displacement in this period; in the relaxation, in one pass
     move_y: Floats
-    shove_x: Floats  # displacement by others; in the relaxation, correction of one pass
+    shove_x: Floats  # sum of the corrections of one pass of the relaxation
     shove_y: Floats
     origin_x: Floats  # position at the last rebuild of the pairs, NaN before the first
     origin_y: Floats
@@ -73,7 +73,6 @@ CONTACT: Final = np.dtype(
         ("x", np.float64),  # unit vector towards the obstacle
         ("y", np.float64),
         ("allowed", np.float64),  # allowed displacement towards it
-        ("blocked", np.float64),  # blocked displacement towards it
     ]
 )
 """One contact of a robot."""
@@ -111,7 +110,7 @@ class Blocks(NamedTuple):
 
     x: Floats  # the columns of the positions
     y: Floats
-    motion: Floats  # float fields of `Bodies`, shape (5, ≥ n)
+    motion: Floats  # float fields of `Bodies`, shape (7, ≥ n)
     roles: Integers  # integer fields of `Bodies`, shape (4, ≥ n)
     work_floats: Floats  # `Work`, shape (7, n)
     work_integers: Integers  # shape (4, n)
@@ -187,6 +186,7 @@ def memory_of(blocks: Blocks) -> Memory:
     bodies = Bodies(
         blocks.x, blocks.y,
         motion[0][:n], motion[1][:n], motion[2][:n], motion[3][:n], motion[4][:n],
+        motion[5][:n], motion[6][:n],
         roles[0][:n], roles[1][:n], roles[2][:n], roles[3][:n],
     )  # fmt: skip
     return Memory(

@@ -1,10 +1,18 @@
 """Contacts of bodies: sliding with friction, relaxation of wedges (specification, section 2.5). Compiled.
 
 A robot that drives into a body or a wall loses the normal part of its motion and slides along it; the
-tangential part shrinks by μ times the blocked normal displacement (Coulomb friction). Two robots that drive
-into each other share the gap in proportion to their speeds. Several contacts of a robot are handled one after
-the other, the most blocking first; the remaining overlap (a wedge) is relaxed
-(`kswarms.model.kernel.relaxation`).
+tangential part shrinks by μ times the blocked normal displacement (Coulomb friction). Several contacts of a
+robot are handled one after the other, always the one that the motion exceeds most; the remaining overlap (a
+wedge) is relaxed (`kswarms.model.kernel.relaxation`).
+
+Two robots in contact move along their normal n, from i to j, by a common displacement c, and each takes half
+of their gap g:
+
+    c = p/2 (w_i + w_j)·n, but at least u_j·n + g/2 and at most u_i·n − g/2.
+
+Here u is the displacement that a robot's drive commands, w the robot's displacement in the last period
+(without relaxation), and p the push share. Two opposed drives of equal force cancel, so the common momentum
+remains. With p = 0 a robot never pushes one that stands.
 """
 
 import math
@@ -24,7 +32,7 @@ def translate(m: Memory) -> None:
     """Move all bodies by one period; raise a ValueError if overlaps remain."""
     x, y, stride = m.bodies.x, m.bodies.y, m.bodies.stride
     forward_x, forward_y = m.bodies.forward_x, m.bodies.forward_y
-    move_x, move_y, shove_x, shove_y = m.work.move_x, m.work.move_y, m.work.shove_x, m.work.shove_y
+    move_x, move_y, moved_x, moved_y = m.work.move_x, m.work.move_y, m.bodies.moved_x, m.bodies.moved_y
     count, friction = m.work.touches, m.scalars["friction"][0]
     n = len(x)
     fastest = 0.0
@@ -32,8 +40,6 @@ def translate(m: Memory) -> None:
         fastest = max(fastest, stride[i])
         move_x[i] = stride[i] * forward_x[i]
         move_y[i] = stride[i] * forward_y[i]
-        shove_x[i] = 0.0
-        shove_y[i] = 0.0
         count[i] = 0
     _meet_bodies(m, fastest)
     _meet_walls(m)
@@ -42,8 +48,10 @@ def translate(m: Memory) -> None:
         if count[i] > 0:
             crowded = True
             move_x[i], move_y[i] = _slide(move_x[i], move_y[i], friction, m.contacts[i], count[i])
-        x[i] += move_x[i] + shove_x[i]
-        y[i] += move_y[i] + shove_y[i]
+        moved_x[i] = move_x[i]
+        moved_y[i] = move_y[i]
+        x[i] += move_x[i]
+        y[i] += move_y[i]
     if crowded:
         separate(m)
 
@@ -58,9 +66,9 @@ def separate(m: Memory) -> None:
 
 @compiled_inner
 def _meet_bodies(m: Memory, fastest: float) -> None:
-    """Find the pairs that would overlap, and the part of each motion that is blocked."""
+    """Find the pairs that would overlap, and the motion towards each other that both are allowed."""
     x, y, stride, work, contacts = m.bodies.x, m.bodies.y, m.bodies.stride, m.work, m.contacts
-    move_x, move_y, shove_x, shove_y = work.move_x, work.move_y, work.shove_x, work.shove_y
+    move_x, move_y, moved_x, moved_y = work.move_x, work.move_y, m.bodies.moved_x, m.bodies.moved_y
     count, first, second = work.touches, m.pairs.close_first, m.pairs.close_second
     radius, push_share = m.scalars["radius"][0], m.scalars["push_share"][0]
     reach = 2.0 * radius + 2.0 * fastest
@@ -79,25 +87,17 @@ def _meet_bodies(m: Memory, fastest: float) -> None:
         gap = max(0.0, distance - 2.0 * radius)
         towards_j = move_x[i] * dx + move_y[i] * dy
         towards_i = -(move_x[j] * dx + move_y[j] * dy)
-        excess = towards_j + towards_i - gap
-        if excess <= 0.0:
+        if towards_j + towards_i <= gap:
             continue
-        driven = max(0.0, towards_j) + max(0.0, towards_i)
-        if towards_j > 0.0:
-            share = excess * towards_j / driven
-            _add_contact(contacts[i], count, i, dx, dy, towards_j, (1.0 - push_share) * share)
-            shove_x[j] += push_share * share * dx
-            shove_y[j] += push_share * share * dy
-        if towards_i > 0.0:
-            share = excess * towards_i / driven
-            _add_contact(contacts[j], count, j, -dx, -dy, towards_i, (1.0 - push_share) * share)
-            shove_x[i] -= push_share * share * dx
-            shove_y[i] -= push_share * share * dy
+        last = (moved_x[i] + moved_x[j]) * dx + (moved_y[i] + moved_y[j]) * dy
+        common = min(towards_j - 0.5 * gap, max(0.5 * gap - towards_i, push_share * 0.5 * last))
+        _add_contact(contacts[i], count, i, dx, dy, common + 0.5 * gap)
+        _add_contact(contacts[j], count, j, -dx, -dy, 0.5 * gap - common)
 
 
 @compiled_inner
 def _meet_walls(m: Memory) -> None:
-    """Find the robots that would leave the arena, and the part of each motion that is blocked."""
+    """Find the robots that would leave the arena, and the motion towards the wall that they are allowed."""
     x, y, radius, half = m.bodies.x, m.bodies.y, m.scalars["radius"][0], m.scalars["half"][0]
     move_x, move_y, count = m.work.move_x, m.work.move_y, m.work.touches
     for i in range(len(x)):
@@ -109,41 +109,36 @@ def _meet_walls(m: Memory) -> None:
             if towards > gap:
                 nx = sign if axis == 0 else 0.0
                 ny = sign if axis == 1 else 0.0
-                _add_contact(m.contacts[i], count, i, nx, ny, towards, towards - gap)
+                _add_contact(m.contacts[i], count, i, nx, ny, gap)
 
 
 @compiled_inner
-def _add_contact(
-    contacts: Records, count: Integers, robot: int, x: float, y: float, towards: float, blocked: float
-) -> None:
+def _add_contact(contacts: Records, count: Integers, robot: int, x: float, y: float, allowed: float) -> None:
     k = count[robot]
     if k < MAX_CONTACTS:
         contacts["x"][k] = x
         contacts["y"][k] = y
-        contacts["allowed"][k] = towards - blocked
-        contacts["blocked"][k] = blocked
+        contacts["allowed"][k] = allowed
         count[robot] = k + 1
 
 
 @compiled_inner
 def _slide(x: float, y: float, friction: float, contacts: Records, count: int) -> tuple[float, float]:
     """Return the motion (x, y) of a robot without its blocked parts and the loss by friction."""
-    normal_x, normal_y = contacts["x"], contacts["y"]
-    allowed, blocked = contacts["allowed"], contacts["blocked"]
+    normal_x, normal_y, allowed = contacts["x"], contacts["y"], contacts["allowed"]
     for _ in range(count):
-        worst = 0
-        for k in range(1, count):
-            if blocked[k] > blocked[worst]:
-                worst = k
-        blocked[worst] = -1.0  # done
+        worst, most = -1, 0.0
+        for k in range(count):
+            excess = x * normal_x[k] + y * normal_y[k] - allowed[k]
+            if excess > most:
+                worst, most = k, excess
+        if worst < 0:
+            break
         nx = normal_x[worst]
         ny = normal_y[worst]
-        normal = x * nx + y * ny
-        excess = normal - allowed[worst]
-        if excess <= 0.0:
-            continue
         tangential = y * nx - x * ny
-        tangential = math.copysign(max(0.0, abs(tangential) - friction * excess), tangential)
+        tangential = math.copysign(max(0.0, abs(tangential) - friction * most), tangential)
         x = allowed[worst] * nx - tangential * ny
         y = allowed[worst] * ny + tangential * nx
+        allowed[worst] = math.inf  # each contact is applied once
     return x, y

@@ -204,14 +204,16 @@ def test_a_robot_without_conflicts_may_be_removed_early_or_late(preempt: bool) -
     assert compared >= 2
 
 
-def test_removal_keeps_the_latest_opponents() -> None:
+def test_removal_keeps_the_states_of_the_others() -> None:
     states = RobotStates(np.zeros((5, 2)), np.array([0, 0, 1, 1, 1]), np.arange(5.0))
     states.bodies.opponent[:] = [-1, 4, 1, 0, 3]
+    states.bodies.moved_x[:] = range(5)
     memory = states.bodies.heading
     states.keep(np.array([0, 2, 4]), np.zeros((3, 2)))
     assert states.bodies.opponent.tolist() == [-1, -1, -1]
     assert states.heading.tolist() == [0.0, 2.0, 4.0]
     assert states.swarm.tolist() == [0, 1, 1]
+    assert states.bodies.moved_x.tolist() == [0, 2, 4]
     assert np.shares_memory(states.bodies.heading, memory)
 
     states.bodies.opponent[:] = [2, 0, 1]

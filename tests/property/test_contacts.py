@@ -80,13 +80,19 @@ def pair(
     strides: tuple[float, float],
     friction: float = 0.0,
     push_share: float = 0.0,
+    moved: tuple[float, float] = (0.0, 0.0),
 ) -> tuple[Scene, Floats]:
-    """Return a scene of two robots with a gap, and the unit vector from the first to the second."""
+    """Return a scene of two robots with a gap, and the unit vector from the first to the second.
+
+    `moved` are their displacements along it in the last period (m).
+    """
     normal = unit(direction)
     first = np.array((0.1, -0.05))
     positions = np.array((first, first + (2 * R + gap) * normal))
     game = game_of(2, friction, push_share)
-    return make_scene(game, positions, np.add(direction, headings), np.array(strides)), normal
+    scene = make_scene(game, positions, np.add(direction, headings), np.array(strides))
+    scene.states.bodies.moved_x[:], scene.states.bodies.moved_y[:] = np.outer(normal, moved)
+    return scene, normal
 
 
 def slide(normal: Floats, gap: float, turn: float, friction: float) -> Floats:
@@ -120,21 +126,66 @@ def test_a_contact_removes_the_normal_motion_and_friction(
 
 @settings(deadline=None, max_examples=50)
 @given(angles, st.floats(0, 0.01), st.floats(0, 1), frictions)
-def test_a_push_moves_a_standing_robot_by_the_push_share(
+def test_a_robot_that_arrives_pushes_a_standing_one_by_its_momentum(
     direction: float, gap: float, push_share: float, friction: float
 ) -> None:
-    scene, normal = pair(direction, gap, (0.0, 0.0), (STRIDE, 0.0), friction, push_share)
-    blocked = STRIDE - gap
-    expected = np.array(((STRIDE - (1 - push_share) * blocked) * normal, push_share * blocked * normal))
+    # The drives cancel. In each period, both move by the mean of their last motions, times the push share.
+    scene, normal = pair(direction, gap, (0.0, 0.0), (STRIDE, 0.0), friction, push_share, (STRIDE, 0.0))
+    common = min(STRIDE - gap / 2, max(gap / 2, push_share * STRIDE / 2))
+    expected = np.outer((common + gap / 2, common - gap / 2), normal)
     np.testing.assert_allclose(drive(scene), expected, rtol=0, atol=EXACT)
+    for _ in range(3):
+        common *= push_share
+        np.testing.assert_allclose(drive(scene), np.outer((common, common), normal), rtol=0, atol=EXACT)
 
 
 @settings(deadline=None, max_examples=50)
-@given(angles, st.floats(0, 0.01), st.floats(0.2, 1))
-def test_two_robots_that_meet_share_the_gap_by_speed(direction: float, gap: float, part: float) -> None:
-    scene, normal = pair(direction, gap, (0.0, math.pi), (STRIDE, part * STRIDE))
-    free = min(gap, (1 + part) * STRIDE) / (1 + part)
-    np.testing.assert_allclose(drive(scene), (free * normal, -free * part * normal), rtol=0, atol=EXACT)
+@given(angles, st.floats(0, 1), frictions)
+def test_a_robot_that_starts_in_contact_pushes_nothing(
+    direction: float, push_share: float, friction: float
+) -> None:
+    scene, _ = pair(direction, 0.0, (0.0, 0.0), (STRIDE, 0.0), friction, push_share)
+    np.testing.assert_allclose(drive(scene, 5), 0, atol=EXACT)
+
+
+@settings(deadline=None, max_examples=50)
+@given(angles, st.floats(0, 0.01), frictions, st.floats(-STRIDE, STRIDE))
+def test_without_a_push_share_a_standing_robot_is_never_moved(
+    direction: float, gap: float, friction: float, moved: float
+) -> None:
+    scene, normal = pair(direction, gap, (0.0, 0.0), (STRIDE, 0.0), friction, 0.0, (STRIDE, moved))
+    np.testing.assert_allclose(drive(scene, 3), (gap * normal, (0, 0)), rtol=0, atol=EXACT)
+
+
+@settings(deadline=None, max_examples=50)
+@given(angles, st.floats(0, 0.01), st.floats(0, 1), st.floats(0, 1))
+def test_two_robots_that_meet_share_the_gap_and_then_stand(
+    direction: float, gap: float, part: float, push_share: float
+) -> None:
+    # The slower one takes less than half of the gap if its drive does not reach that far.
+    strides = (STRIDE, part * STRIDE)
+    scene, normal = pair(direction, gap, (0.0, math.pi), strides, 0.0, push_share)
+    slower = min(gap / 2, part * STRIDE)
+    free = min(gap - slower, STRIDE)
+    np.testing.assert_allclose(drive(scene), np.outer((free, -slower), normal), rtol=0, atol=EXACT)
+    # Equal and opposite motions have no momentum.
+    scene, _ = pair(direction, 0.0, (0.0, math.pi), (STRIDE, STRIDE), 0.0, push_share, (STRIDE, -STRIDE))
+    np.testing.assert_allclose(drive(scene, 3), 0, atol=EXACT)
+
+
+@settings(deadline=None, max_examples=50)
+@given(angles, st.floats(0, 0.002), st.floats(0, 0.8), st.floats(0, 1))
+def test_a_follower_does_not_slow_a_slower_robot_down(
+    direction: float, gap: float, part: float, push_share: float
+) -> None:
+    # With momentum it pushes the slower one.
+    slow = part * STRIDE
+    scene, normal = pair(direction, gap, (0.0, 0.0), (STRIDE, slow), 0.0, push_share, (STRIDE, slow))
+    moved = drive(scene) @ normal
+    assert slow - EXACT <= moved[1] <= STRIDE + EXACT
+    assert moved[0] - moved[1] == pytest.approx(gap, abs=EXACT)
+    common = np.clip(push_share * (STRIDE + slow) / 2, slow + gap / 2, STRIDE - gap / 2)
+    np.testing.assert_allclose(moved, (common + gap / 2, common - gap / 2), rtol=0, atol=EXACT)
 
 
 @settings(deadline=None, max_examples=50)
@@ -167,9 +218,9 @@ def test_a_wedge_gives_way_a_little(turn: float, aside: float) -> None:
     assert moved[0, 1] - moved[1, 1] == pytest.approx(0.5 * R, abs=0.01 * R)
     # Relaxation without momentum gives the same displacements.
     plain = Ground(R, game.side / 2, game.parameters.friction, 0.0, max_momentum=0.0)
-    slow = positions.copy()
+    slow, last = positions.copy(), np.zeros_like(positions)
     for _ in range(60):
-        translate(slow, STRIDE * np.array(((0, 0), (0, 0), unit(turn))), plain)
+        translate(slow, last, STRIDE * np.array(((0, 0), (0, 0), unit(turn))), plain)
     given_way = (slow - positions) @ turned.T
     np.testing.assert_allclose(moved[:2], given_way[:2], rtol=0, atol=0.01 * R)
 

@@ -146,7 +146,7 @@ def test_an_extra_event_is_detected() -> None:
         assert_same_events(events_of_a_kernel(), list(EVENTS[:-1]))
 
 
-@pytest.mark.parametrize("field", ["positions", "heading", "forward_x", "forward_y"])
+@pytest.mark.parametrize("field", ["positions", "heading", "forward_x", "forward_y", "moved_x"])
 def test_a_different_state_is_detected(field: str) -> None:
     states = RobotStates(np.zeros((2, 2)), np.zeros(2, dtype=np.int64), np.zeros(2))
     state = State.of(states)

@@ -36,9 +36,11 @@ def _same_angle(angle: float, other: float) -> bool:
 
 
 def assert_same_state(states: RobotStates, expected: State) -> None:
-    """Compare positions and headings; check that the stored direction is that of the heading."""
+    """Compare positions, motions and headings; check that the stored direction is that of the heading."""
     np.testing.assert_allclose(states.positions, expected.positions, rtol=0, atol=PRECISION)
     bodies = states.bodies
+    moved = np.column_stack((bodies.moved_x, bodies.moved_y))
+    np.testing.assert_allclose(moved, expected.moved, rtol=0, atol=PRECISION)
     np.testing.assert_allclose(bodies.heading, expected.heading, rtol=0, atol=PRECISION)
     np.testing.assert_allclose(bodies.forward_x, np.cos(expected.heading), rtol=0, atol=PRECISION)
     np.testing.assert_allclose(bodies.forward_y, np.sin(expected.heading), rtol=0, atol=PRECISION)

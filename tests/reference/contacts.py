@@ -37,7 +37,6 @@ class Contact(NamedTuple):
 
     normal: Floats  # unit vector towards it
     allowed: float  # allowed displacement towards it (m)
-    blocked: float  # blocked displacement towards it (m)
 
 
 def offsets(positions: Floats) -> tuple[Floats, Floats, Floats]:
@@ -48,31 +47,35 @@ def offsets(positions: Floats) -> tuple[Floats, Floats, Floats]:
     return dx, dy, distance
 
 
-def translate(positions: Floats, wanted: Floats, ground: Ground) -> None:
-    """Move all bodies by their displacements, subject to contacts; writes `positions`, shape (n, 2)."""
-    contacts, shoves = meet_bodies(positions, wanted, ground)
+def translate(positions: Floats, moved: Floats, wanted: Floats, ground: Ground) -> None:
+    """Move all bodies by their displacements, subject to contacts.
+
+    Writes `positions` and `moved`, the displacements of the last period without relaxation, shape (n, 2).
+    """
+    contacts = meet_bodies(positions, moved, wanted, ground)
     for robot, found in enumerate(contacts):
         found += meet_walls(positions[robot], wanted[robot], ground)
-    moves = [slide(want, found, ground.friction) for want, found in zip(wanted, contacts, strict=True)]
-    positions += np.array(moves) + shoves
+    moved[:] = [slide(want, found, ground.friction) for want, found in zip(wanted, contacts, strict=True)]
+    positions += moved
     if any(contacts):
         relax(positions, ground)
 
 
-def meet_bodies(positions: Floats, wanted: Floats, ground: Ground) -> tuple[list[list[Contact]], Floats]:
-    """Return each robot's contacts with others, and its displacement by others, shape (n, 2)."""
+def meet_bodies(positions: Floats, moved: Floats, wanted: Floats, ground: Ground) -> list[list[Contact]]:
+    """Return each robot's contacts with others."""
     dx, dy, distance = offsets(positions)
     normal = np.stack((dx, dy), axis=2) / distance[:, :, None]
-    approach = (wanted[:, None, :] * normal).sum(axis=2)  # of i towards j
-    excess = approach + approach.T - np.maximum(0.0, distance - 2 * ground.radius)
+    gap = np.maximum(0.0, distance - 2 * ground.radius)
+    own = (wanted[:, None, :] * normal).sum(axis=2)  # of i towards j
+    others = -own.T  # of j away from i
+    momentum = ground.push_share / 2 * ((moved[:, None, :] + moved[None, :, :]) * normal).sum(axis=2)
+    closing = own - others > gap
+    with np.errstate(invalid="ignore"):  # the diagonal
+        common = np.clip(momentum, others + gap / 2, own - gap / 2)
     contacts: list[list[Contact]] = [[] for _ in positions]
-    shoves = np.zeros_like(positions)
-    for i, j in np.argwhere((excess > 0) & (approach > 0)):
-        part = excess[i, j] * approach[i, j] / (approach[i, j] + max(0.0, approach[j, i]))
-        blocked = (1 - ground.push_share) * part
-        contacts[i].append(Contact(normal[i, j], approach[i, j] - blocked, blocked))
-        shoves[j] += ground.push_share * part * normal[i, j]
-    return contacts, shoves
+    for i, j in np.argwhere(closing):
+        contacts[i].append(Contact(normal[i, j], common[i, j] + gap[i, j] / 2))
+    return contacts
 
 
 def meet_walls(place: Floats, want: Floats, ground: Ground) -> list[Contact]:
@@ -82,21 +85,22 @@ def meet_walls(place: Floats, want: Floats, ground: Ground) -> list[Contact]:
         gap = max(0.0, ground.half - ground.radius - place @ normal)
         approach = want @ normal
         if approach > gap:
-            contacts.append(Contact(normal, gap, approach - gap))
+            contacts.append(Contact(normal, gap))
     return contacts
 
 
 def slide(want: Floats, contacts: list[Contact], friction: float) -> Floats:
     """Return a displacement without its blocked normal parts and the friction of its tangential parts."""
-    move = want.copy()
-    for contact in sorted(contacts, key=lambda contact: -contact.blocked):
-        towards = move @ contact.normal
-        lost = towards - contact.allowed
-        if lost > 0:
-            along = move - towards * contact.normal
-            length = math.hypot(*along)
-            kept = max(0.0, 1 - friction * float(lost) / length) if length > 0 else 0.0
-            move = contact.allowed * contact.normal + kept * along
+    move, rest = want.copy(), list(contacts)
+    while rest:
+        lost, k = max((float(move @ contact.normal) - contact.allowed, k) for k, contact in enumerate(rest))
+        contact = rest.pop(k)
+        if lost <= 0:
+            break
+        along = move - (move @ contact.normal) * contact.normal
+        length = math.hypot(*along)
+        kept = max(0.0, 1 - friction * lost / length) if length > 0 else 0.0
+        move = contact.allowed * contact.normal + kept * along
     return move
 
 

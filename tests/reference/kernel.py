@@ -41,6 +41,7 @@ class State:
     """State of the robots: arrays of length n, or (n, 2)."""
 
     positions: Floats
+    moved: Floats  # displacement in the last period, without relaxation
     heading: Floats
     stride: Floats
     turn_rate: Floats
@@ -53,7 +54,8 @@ class State:
     def of(cls, states: RobotStates) -> Self:
         """Copy the state arrays."""
         names = ("heading", "stride", "turn_rate", "phase", "carrying", "opponent", "swarm")
-        return cls(states.positions.copy(), *(getattr(states.bodies, name).copy() for name in names))
+        moved = np.column_stack((states.bodies.moved_x, states.bodies.moved_y))
+        return cls(states.positions.copy(), moved, *(getattr(states.bodies, name).copy() for name in names))
 
 
 class ReferenceKernel:
@@ -176,7 +178,7 @@ class ReferenceKernel:
         turning = state.turn_rate != 0
         state.heading[turning] = wrap(state.heading + state.turn_rate)[turning]
         forward = np.column_stack((np.cos(state.heading), np.sin(state.heading)))
-        translate(state.positions, state.stride[:, None] * forward, self.ground)
+        translate(state.positions, state.moved, state.stride[:, None] * forward, self.ground)
 
 
 def wrap(angle: Floats) -> Floats:

@@ -95,6 +95,7 @@ def scenes(draw: st.DrawFn, largest: int = 60) -> Scene:
     bodies.opponent[:] = rng.integers(-1, n, n)
     bodies.stride[:] = rng.choice((0.0, 0.5, 1.0), n, p=(0.2, 0.1, 0.7)) * fastest
     bodies.turn_rate[:] = rng.choice((0.0, -0.296, 0.5), n, p=(0.6, 0.2, 0.2))
+    bodies.moved_x[:], bodies.moved_y[:] = rng.uniform(-0.7, 0.7, (2, n)) * fastest
     return scene
 
 
@@ -175,6 +176,7 @@ def mirrored(scene: Scene) -> Scene:
     image.states.positions[:, 0] *= -1
     bodies.heading[:] = np.where(bodies.heading > 0, math.pi, -math.pi) - bodies.heading
     bodies.forward_x[:] *= -1
+    bodies.moved_x[:] *= -1
     bodies.turn_rate[:] *= -1
     flip = np.array((-1.0, 1.0))
     arena = replace(scene.arena, stations=scene.arena.stations * flip, bases=scene.arena.bases * flip)

@@ -30,7 +30,7 @@ DOCUMENTED = {
     "preempt": False,
 }
 
-# Friction and push share are fitted to the ARGoS file; the rest is given with it.
+# The push share is fitted to the ARGoS file; the rest is given with it, as is the friction of the engine.
 ARGOS_VALUES = {
     "period": 0.1,
     "conflict_distance": 0.10,
@@ -47,6 +47,8 @@ ARGOS_VALUES = {
     "station_radius": 0.12,
     "base_radius": 0.12,
     "base_range": 0.667,
+    "friction": 0.7,
+    "push_share": 1.0,
     "clearance": 0.01,
     "wall_clearance": 0.005,
     "preempt": False,
