@@ -6,6 +6,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+from kswarms.agents.common.atomic_files import atomic_path
 from kswarms.agents.common.errors import InputError
 from kswarms.model.description.parameters import PRESETS, Parameters
 from kswarms.scenarios.catalogue import CATALOGUE
@@ -17,6 +18,8 @@ Curves = Mapping[tuple[str, str], Sequence[int]]
 Play = Callable[[Sequence[Run]], Generator[tuple[Run, Outcome], None, None]]
 """Plays runs and yields each with its outcome, in any order."""
 
+_ABOUT: Final = "calibration"
+"""Key of the first line of a file of games."""
 CONTACTS: Final = ("friction", "push_share")
 """Parameters of the contacts. The scenarios ``argos-*`` have these of a world; the others come with ARGoS."""
 
@@ -53,14 +56,29 @@ def _in_world(own: Parameters, world: Parameters) -> Parameters:
 
 
 class Evidence:
-    """The outcomes of the games so far, one line of JSON for each.
+    """The outcomes of the games so far, one line of JSON for each; the first line says of what calibration.
 
-    A line that an interruption cut off is ignored. `play` plays the missing runs.
+    A last line that an interruption cut off is ignored. `play` plays the missing runs.
+
+    Raises
+    ------
+    InputError
+        The file is not of a calibration, or is of another one than `about`.
     """
 
-    def __init__(self, path: Path, play: Play) -> None:
+    def __init__(self, path: Path, about: Mapping[str, Any], play: Play) -> None:
         self._path, self._play = path, play
-        self._known: dict[str, Rows] = dict(_read(path))
+        self._known: dict[str, Rows] = {}
+        if not path.exists():
+            with atomic_path(path) as file:
+                file.write_text(json.dumps({_ABOUT: about}) + "\n", encoding="utf-8")
+            return
+        found, lines = _read(path)
+        if found != json.loads(json.dumps(about)):
+            raise InputError(
+                "out", str(path.parent), "has another calibration; use another directory, or --fresh"
+            )
+        self._known.update((digest, Rows(swarms, policies)) for digest, swarms, policies in lines)
 
     def rows(self, plans: Sequence[Sequence[Run]]) -> list[Rows]:
         """Return the rows of the runs of each plan, and play those that are missing."""
@@ -98,15 +116,22 @@ def _labelled(plan: Iterable[Run], known: Mapping[str, Rows]) -> Rows:
     return rows
 
 
-def _read(path: Path) -> Generator[tuple[str, Rows], None, None]:
-    if not path.exists():
-        return
-    *lines, tail = path.read_text(encoding="utf-8").split("\n")
-    if tail:  # cut off by an interruption
-        path.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
-    for line in lines:
-        try:
-            digest, swarms, policies = json.loads(line)
-            yield str(digest), Rows(list(swarms), list(policies))
-        except (ValueError, TypeError):
-            raise InputError("out", str(path.parent), f"has a {path.name} that is no file of games") from None
+def require_evidence(path: Path) -> None:
+    """Raise an `InputError` if a file is not of a calibration."""
+    _read(path)
+
+
+def _read(path: Path) -> tuple[object, list[Any]]:
+    """Return what the first line says, and the other lines; a last line that is cut off is deleted."""
+    try:
+        *complete, tail = path.read_text(encoding="utf-8").split("\n")
+        first, *lines = [json.loads(line) for line in complete]
+        about = first[_ABOUT]
+        if any(len(line) != len(Rows._fields) + 1 for line in lines):
+            raise ValueError
+    except (ValueError, TypeError, KeyError, RecursionError):
+        raise InputError("out", str(path.parent), f"has a {path.name} that is no file of games") from None
+    if tail:
+        with atomic_path(path) as file:
+            file.write_text("".join(f"{line}\n" for line in complete), encoding="utf-8")
+    return about, lines

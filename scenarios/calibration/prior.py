@@ -55,5 +55,5 @@ def to_world(free: Sequence[str], position: Floats, base: Parameters = PRESETS["
             value = low + step * min(int(part * steps), steps - 1)
         else:
             value = low * (high / low) ** float(part)
-        values[name] = float(f"{value:.4g}")
+        values[name] = min(float(f"{value:.4g}"), high)  # rounding may exceed the range
     return base.replace(**values)

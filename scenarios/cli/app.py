@@ -33,7 +33,7 @@ COMMANDS: Final = {
     "export": ("export", "export", "Write the tables of a study again, without playing."),
     "merge": ("export", "merge", "Merge studies, such as shards, into one."),
     "replay": ("status", "replay", "Play one run again and compare the results."),
-    "calibrate": ("calibrate", "calibrate", "Fit the free parameters to Table 6.1."),
+    "calibrate": ("calibrate", "calibrate", "Find the worlds that meet all targets."),
     "explore": ("explore", "explore", "Open a page to watch and change games."),
     "film": ("film", "film", "Film a game or part of it."),
     "conflicts": ("conflicts", "conflicts", "List the conflicts of a game."),

@@ -60,10 +60,10 @@ def calibrate(
     for number, wave in enumerate(calibrate(setup, stages, directory.evidence), 1):
         directory.write(wave)
         print_line(
-            f"wave {number}: {len(wave['worlds'])} of {wave['tried']} worlds within {wave['factor']:.3g} times"
-            " the tolerances"
+            f"wave {number}: {len(wave['worlds'])} of {wave['tried']} worlds"
+            f" within {wave['factor']:.3g} times the tolerances"
         )
-    print_line(f"worlds: {directory.ensemble}")
+    print_line(f"trace: {directory.trace}")
 
 
 def _judge(targets: Sequence[Any], rows: Any) -> Mapping[str, float]:

@@ -69,7 +69,7 @@ COMMANDS: Final = (
     ["film", "study", "--run", "RUN", "--sheet", "1", "--size", "64"],
     ["contribution", "tiny.toml", "--n", "4", "--seeds", "1", "--jobs", "1"],
     ["report", "study"],
-    ["calibrate", "--generations", "0"],  # refused, as it would play for long
+    ["calibrate", "--waves", "0"],  # refused, as it would play for long
     ["explore", "--port", "-1"],  # refused, as it would serve a page
 )
 EXPENSIVE: Final = ("--all", "--scheduler", "--install-completion", "--show-completion")
@@ -111,7 +111,7 @@ def command_line(rng: Random, directory: Path) -> Input:
             del words[place]
         else:
             words.insert(place, words[place])
-    guards = {"calibrate": ["--generations", "0"], "explore": ["--port", "-1"], "run": ["--jobs", "1"]}
+    guards = {"calibrate": ["--waves", "0"], "explore": ["--port", "-1"], "run": ["--jobs", "1"]}
     words += guards.get(base[0], [])
     if rng.random() < 0.02:
         words[0] = rng.choice(WORDS)

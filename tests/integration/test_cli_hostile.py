@@ -36,8 +36,8 @@ swarms = [{ policy = "attack" }, { policy = "attack" }]
         ("run fig-6.1a --out=", "out='': must not be empty"),
         ("contribution fig-6.1a --n 6 --out=", "out='': must not be empty"),
         ("calibrate --out=", "out='': must not be empty"),
-        ("calibrate --seeds 99999999", "seeds=99999999: must be less than or equal to 1000"),
-        ("calibrate --generations 99999999", "generations=99999999: must be less than or equal to 10000"),
+        ("calibrate --size 99999999", "size=99999999: must be less than or equal to 10000"),
+        ("calibrate --waves 99999999", "waves=99999999: must be less than or equal to 1000"),
         (
             "film fig-6.1a --n 6 --out a.gif --speed 1e-300",
             "speed=1e-300: must be higher: a film has at most",

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from kswarms.agents.common.errors import InputError
-from kswarms.scenarios.calibration.fit import Setup, calibrate
+from kswarms.scenarios.calibration.directory import open_calibration
 from kswarms.scenarios.contribution.table import prepare_table
 from kswarms.scenarios.study.directory import make_directory, write_json
 from kswarms.scenarios.study.study import Study
@@ -33,12 +33,12 @@ def enter_study(directory: Path) -> None:
     Study(directory).__enter__()
 
 
-def enter_fit(directory: Path) -> None:
-    calibrate(Setup(densities=(6,)), {("avoid", 6): 0.0}, fail, fail, directory)
+def enter_calibration(directory: Path) -> None:
+    open_calibration(directory, {}, fail)
 
 
-def enter_new_fit(directory: Path) -> None:
-    calibrate(Setup(densities=(6,)), {("avoid", 6): 0.0}, fail, fail, directory, fresh=True)
+def enter_new_calibration(directory: Path) -> None:
+    open_calibration(directory, {}, fail, fresh=True)
 
 
 @pytest.fixture
@@ -49,7 +49,7 @@ def key(tmp_path: Path) -> Path:
     return tmp_path / "key"
 
 
-ENTRIES = [enter_study, prepare_table, enter_fit, enter_new_fit]
+ENTRIES = [enter_study, prepare_table, enter_calibration, enter_new_calibration]
 
 
 @pytest.mark.parametrize("enter", ENTRIES)
@@ -73,11 +73,11 @@ def test_a_directory_of_the_user_is_refused_and_unchanged(
     [
         (enter_study, "ledger.sqlite"),
         (prepare_table, "contribution.parquet"),
-        (enter_fit, "shares.json"),
-        (enter_new_fit, "shares.json"),
+        (enter_calibration, "games.jsonl"),
+        (enter_new_calibration, "games.jsonl"),
     ],
 )
-@pytest.mark.parametrize("content", [b"precious", b'{"setup": 3, "shares": {}}', b"[" * 5000])
+@pytest.mark.parametrize("content", [b"precious", b'{"calibration": {}}\n[3]\n', b"[" * 5000])
 def test_a_main_file_of_another_program_is_refused_and_unchanged(
     enter: Callable[[Path], None], main: str, content: bytes, key: Path
 ) -> None:
@@ -85,7 +85,7 @@ def test_a_main_file_of_another_program_is_refused_and_unchanged(
     (key.parent / "out" / "lock").write_text("precious")
     (key.parent / "out" / "calibration.json").write_text("precious")
     before = snapshot(key.parent)
-    with pytest.raises(InputError, match=r"a ledger of kswarms|readable Parquet file|no file of a fit"):
+    with pytest.raises(InputError, match=r"a ledger of kswarms|readable Parquet file|no file of games"):
         enter(key.parent / "out")
     assert snapshot(key.parent) == before
 
@@ -131,7 +131,7 @@ def test_results_of_several_commands_share_a_directory(tmp_path: Path) -> None:
         pass
     (tmp_path / "contribution.parquet").unlink()
     prepare_table(tmp_path)
-    (tmp_path / "ledger.sqlite").rename(tmp_path / "shares.json")
+    (tmp_path / "ledger.sqlite").rename(tmp_path / "games.jsonl")
     with pytest.raises(InputError, match=r"has a lock but no ledger[.]sqlite; use another directory"):
         Study(tmp_path).__enter__()
 
