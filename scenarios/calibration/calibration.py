@@ -4,6 +4,7 @@ The result depends only on the settings and the targets, not on interruptions an
 resumed calibration is computed again from the games that it finds in its file.
 """
 
+import math
 from collections.abc import Callable, Generator, Mapping, Sequence
 from typing import Any, Final, NamedTuple, Self
 
@@ -15,7 +16,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.model.description.parameters import text_of
 from kswarms.scenarios.calibration.evidence import Curves, Evidence, Rows, runs_of
 from kswarms.scenarios.calibration.prior import PRIOR, to_world
-from kswarms.scenarios.calibration.waves import Sampling, Wave, sample
+from kswarms.scenarios.calibration.waves import Sampling, sample
 
 FIRST_SEED: Final = 10_000
 """Seed of the first game. Each wave has other seeds; the catalogue has those from 0."""
@@ -46,7 +47,7 @@ class Stage(NamedTuple):
 
 
 def calibrate(setup: Setup, stages: Sequence[Stage], evidence: Evidence) -> Generator[dict[str, Any]]:
-    """Yield each wave as JSON: its settings, and its accepted worlds with their implausibilities."""
+    """Yield each wave as JSON: its factor, and its accepted worlds with their implausibilities."""
     seeds_of_wave = sum(stage.seeds for stage in stages)
     judged: dict[tuple[bytes, int], dict[str, float]] = {}
 
@@ -80,7 +81,19 @@ def calibrate(setup: Setup, stages: Sequence[Stage], evidence: Evidence) -> Gene
         }
 
 
-def from_medoid(wave: Wave) -> list[int]:
-    """Return the accepted positions from the most central one outwards, as indices."""
-    distances = np.linalg.norm(wave.positions[:, None] - wave.positions[None], axis=2)
-    return [int(k) for k in np.argsort(distances[distances.sum(axis=1).argmin()], kind="stable")]
+def ensemble_of(waves: Sequence[Mapping[str, Any]], size: int) -> dict[str, Any]:
+    """Return the worlds of the last wave if it accepted enough of them.
+
+    Otherwise, return the `size` worlds of all waves that are nearest to the targets. ``factor`` is the
+    smallest common factor on the tolerances with which they meet all targets.
+    """
+    *_, last = waves
+    if len(last["worlds"]) >= size:
+        return {"factor": last["factor"], "worlds": last["worlds"]}
+    nearest = sorted((world for wave in waves for world in wave["worlds"]), key=_worst)[:size]
+    equal = [{**world, "weight": 1 / len(nearest)} for world in nearest]
+    return {"factor": max(map(_worst, nearest), default=math.inf), "worlds": equal}
+
+
+def _worst(world: Mapping[str, Any]) -> float:
+    return float(max(world["implausibility"].values()))

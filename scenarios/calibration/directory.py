@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from kswarms.agents.common.atomic_files import remove_temporary_files
+from kswarms.scenarios.calibration.calibration import ensemble_of
 from kswarms.scenarios.calibration.evidence import Evidence, Play, require_evidence
 from kswarms.scenarios.study.directory import GAMES_FILE, make_directory, write_json
 
@@ -23,6 +24,12 @@ class Directory:
         """Write the trace with one more wave."""
         self._content["waves"].append(wave)
         write_json(self.trace, self._content)
+
+    def finish(self, size: int) -> dict[str, Any]:
+        """Write the trace with the ensemble of `size` worlds, and return the ensemble."""
+        self._content["ensemble"] = ensemble_of(self._content["waves"], size)
+        write_json(self.trace, self._content)
+        return dict(self._content["ensemble"])
 
 
 def open_calibration(out: Path, about: Mapping[str, Any], play: Play, fresh: bool = False) -> Directory:

@@ -3,8 +3,8 @@
 The method is approximate Bayesian computation by population Monte Carlo (Beaumont et al., Biometrika 96,
 2009, 983-990) with the distance of history matching, the maximum implausibility over the targets. Each wave
 accepts positions up to a factor on all tolerances; the factor falls to 1 from wave to wave. The prior is
-uniform in the unit cube. A position is judged stage by stage and rejected at the first stage that it misses, which
-accepts the same positions as judging all stages would.
+uniform in the unit cube. A position is judged stage by stage and rejected at the first stage that it misses.
+This accepts the same positions as judging all stages.
 """
 
 from collections.abc import Callable, Generator

@@ -63,6 +63,8 @@ def calibrate(
             f"wave {number}: {len(wave['worlds'])} of {wave['tried']} worlds"
             f" within {wave['factor']:.3g} times the tolerances"
         )
+    found = directory.finish(size)
+    print_line(f"ensemble: {len(found['worlds'])} worlds within {found['factor']:.3g} times the tolerances")
     print_line(f"trace: {directory.trace}")
 
 

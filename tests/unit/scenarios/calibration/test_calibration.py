@@ -10,7 +10,7 @@ import pytest
 
 from kswarms.agents.common.errors import InputError
 from kswarms.model.description.parameters import parse_parameters
-from kswarms.scenarios.calibration.calibration import Setup, Stage, calibrate
+from kswarms.scenarios.calibration.calibration import Setup, Stage, calibrate, ensemble_of
 from kswarms.scenarios.calibration.directory import open_calibration
 from kswarms.scenarios.calibration.evidence import Rows
 from kswarms.scenarios.runs.outcome import Outcome
@@ -106,6 +106,24 @@ def test_another_calibration_and_other_files_are_refused(tmp_path: Path) -> None
         run(tmp_path / "fit", Player(), setup=SETUP.replace(size=9))
     assert {path.name: path.read_bytes() for path in (tmp_path / "fit").iterdir()} == before
     assert json.loads(before["calibration.json"])["setup"]["size"] == 8
+
+
+def test_the_ensemble_is_the_last_wave_or_the_nearest_worlds_of_all() -> None:
+    def world(name: str, *implausibility: float) -> dict[str, Any]:
+        by_target = dict(zip("ab", implausibility, strict=True))
+        return {"parameters": name, "implausibility": by_target, "weight": 0.1}
+
+    first = {"factor": 2.5, "worlds": [world("x", 2.4, 0.1), world("y", 1.1, 1.3), world("z", 0.5, 0.6)]}
+    last = {"factor": 1.0, "worlds": [world("v", 0.9, 0.2)]}
+    assert ensemble_of([first, last], 1) == {"factor": 1.0, "worlds": last["worlds"]}
+    nearest = ensemble_of([first, last], 3)
+    assert [(each["parameters"], each["weight"]) for each in nearest["worlds"]] == [
+        ("z", 1 / 3),
+        ("v", 1 / 3),
+        ("y", 1 / 3),
+    ]
+    assert nearest["factor"] == 1.3
+    assert ensemble_of([{"factor": 1.0, "worlds": []}], 2)["worlds"] == []
 
 
 @pytest.mark.parametrize(
