@@ -8,7 +8,8 @@ from typing import Any, Final, NamedTuple
 
 from kswarms.agents.common.atomic_files import atomic_path
 from kswarms.agents.common.errors import InputError
-from kswarms.model.description.parameters import PRESETS, Parameters
+from kswarms.model.description.parameters import Parameters
+from kswarms.scenarios.calibration.worlds import in_world
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.runs.outcome import Outcome
 from kswarms.scenarios.runs.run import Run, expand
@@ -20,8 +21,6 @@ Play = Callable[[Sequence[Run]], Generator[tuple[Run, Outcome], None, None]]
 
 _ABOUT: Final = "calibration"
 """Key of the first line of a file of games."""
-CONTACTS: Final = ("friction", "push_share")
-"""Parameters of the contacts. The scenarios ``argos-*`` have these of a world; the others come with ARGoS."""
 
 
 class Rows(NamedTuple):
@@ -36,23 +35,13 @@ def runs_of(world: Parameters, curves: Curves, first_seed: int, seeds: int) -> l
     scenarios = []
     for (name, condition), densities in curves.items():
         scenario = CATALOGUE[name]
-        chosen = [each for each in scenario.conditions if each.name == condition]
-        changed = tuple(each.replace(parameters=_in_world(each.parameters, world)) for each in chosen)
-        if not changed:
+        chosen = tuple(each for each in scenario.conditions if each.name == condition)
+        if not chosen:
             names = ", ".join(repr(each.name) for each in scenario.conditions)
             raise InputError("condition", condition, f"must be one of {names} of {name}")
-        scenarios.append(
-            scenario.replace(conditions=changed, densities=tuple(densities), seeds=seeds, grid={})
-        )
+        games = {"densities": tuple(densities), "seeds": seeds, "grid": {}}
+        scenarios.append(in_world(scenario.replace(conditions=chosen, **games), world))
     return expand(scenarios, first_seed)
-
-
-def _in_world(own: Parameters, world: Parameters) -> Parameters:
-    """Return the parameters of a scenario in another world: what the scenario sets itself stays."""
-    argos = PRESETS["argos"]
-    if own == argos:
-        return argos.replace(**{name: getattr(world, name) for name in CONTACTS})
-    return world.replace(**{name: value for name, value in own if value != getattr(PRESETS["fitted"], name)})
 
 
 class Evidence:

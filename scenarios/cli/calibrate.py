@@ -43,7 +43,7 @@ def calibrate(
 
     Example: kswarms calibrate --free friction,gamma --size 10
     """
-    from kswarms.analysis.findings.targets import read_targets
+    from kswarms.analysis.worlds.targets import read_targets
     from kswarms.scenarios.calibration.calibration import Setup, Stage, calibrate
     from kswarms.scenarios.calibration.directory import open_calibration
 

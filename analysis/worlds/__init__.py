@@ -1,0 +1,1 @@
+"""Findings and targets over several worlds: discrepancies, implausibilities and verdicts."""
