@@ -8,11 +8,11 @@ import math
 
 from kswarms.agents.common.errors import require_type
 from kswarms.analysis.findings.claims import Agreement, Claim, Compare, Overtake, Peak, Share, Trend
-from kswarms.analysis.findings.comparing import judge_at_each, judge_over_all
-from kswarms.analysis.findings.curve_claims import judge_overtaking, judge_peak, judge_trend
 from kswarms.analysis.findings.data import ClaimData, NoDataError
 from kswarms.analysis.findings.finding import Finding
-from kswarms.analysis.findings.learned_claims import judge_agreement, judge_share
+from kswarms.analysis.findings.judges.comparing import judge_at_each, judge_over_all
+from kswarms.analysis.findings.judges.curve_claims import judge_overtaking, judge_peak, judge_trend
+from kswarms.analysis.findings.judges.learned_claims import judge_agreement, judge_share
 from kswarms.analysis.findings.verdicts import NO_DATA, Outcome, Verdict
 from kswarms.analysis.results.runs import Results
 

@@ -1,8 +1,9 @@
 """Reading outcomes from a results directory (section 3.5 of the experiments) or from games in memory."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, Self
 
 import pandas as pd
 
@@ -27,6 +28,11 @@ class Results:
 
     runs: pd.DataFrame
     policies: pd.DataFrame | None = None
+
+    @classmethod
+    def of_rows(cls, runs: Sequence[Mapping[str, Any]], policies: Sequence[Mapping[str, Any]]) -> Self:
+        """Return the results in rows of both tables."""
+        return cls(pd.DataFrame(runs), pd.DataFrame(policies) if policies else None)
 
 
 def read_results(

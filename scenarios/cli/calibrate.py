@@ -43,7 +43,7 @@ def calibrate(
 
     Example: kswarms calibrate --free friction,gamma --size 10
     """
-    from kswarms.analysis.worlds.targets import read_targets
+    from kswarms.analysis.findings.worlds.targets import read_targets
     from kswarms.scenarios.calibration.calibration import Setup, Stage, calibrate
     from kswarms.scenarios.calibration.directory import open_calibration
 
@@ -70,11 +70,9 @@ def calibrate(
 
 def _judge(targets: Sequence[Any], rows: Any) -> Mapping[str, float]:
     """Return the implausibility of each target."""
-    import pandas as pd
-
     from kswarms.analysis.results.runs import Results
 
-    results = Results(pd.DataFrame(rows.swarms), pd.DataFrame(rows.policies) if rows.policies else None)
+    results = Results.of_rows(rows.swarms, rows.policies)
     return {target.id: target.implausibility(results) for target in targets}
 
 

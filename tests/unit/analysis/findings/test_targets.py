@@ -8,10 +8,10 @@ from kswarms.agents.common.errors import InputError
 from kswarms.analysis.findings.claims import Agreement, Claim, Compare, Overtake, Peak, Share, Trend
 from kswarms.analysis.findings.data import NoDataError
 from kswarms.analysis.findings.quantity import Quantity
+from kswarms.analysis.findings.worlds.discrepancy import discrepancy
+from kswarms.analysis.findings.worlds.targets import Target, Targets, read_targets
 from kswarms.analysis.results.published import table_6_1
 from kswarms.analysis.results.runs import Results
-from kswarms.analysis.worlds.discrepancy import discrepancy
-from kswarms.analysis.worlds.targets import Target, Targets, read_targets
 from kswarms.scenarios.catalogue import CATALOGUE
 from tests.helpers.synthetic_results import DENSITIES, LEARNED, S1, S2, policies, runs
 

@@ -10,7 +10,7 @@ from scipy import stats
 from kswarms.agents.common.errors import InputError
 from kswarms.analysis.findings.claims import Agreement, Share
 from kswarms.analysis.findings.data import ClaimData, NoDataError, format_densities, sizes
-from kswarms.analysis.findings.evidence import too_few_note
+from kswarms.analysis.findings.judges.evidence import too_few_note
 from kswarms.analysis.findings.verdicts import Outcome, Region
 from kswarms.analysis.results.published import published_cells
 from kswarms.analysis.statistics.intervals import Interval, Values, bootstrap_interval

@@ -10,8 +10,8 @@ from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.input_files import read_toml, to_path
 from kswarms.analysis.findings.claims import Claim
+from kswarms.analysis.findings.worlds.discrepancy import discrepancy
 from kswarms.analysis.results.runs import Results
-from kswarms.analysis.worlds.discrepancy import discrepancy
 
 BUILT_IN: Final = ("chapter-6",)
 """Names of the targets that are package data."""

@@ -4,7 +4,7 @@ import math
 
 from kswarms.analysis.findings.claims import Compare
 from kswarms.analysis.findings.data import ClaimData, NoDataError, difference, format_densities
-from kswarms.analysis.findings.evidence import additional_seeds_note, joint_level
+from kswarms.analysis.findings.judges.evidence import additional_seeds_note, joint_level
 from kswarms.analysis.findings.quantity import Quantity
 from kswarms.analysis.findings.verdicts import FAILS, HOLDS, UNDECIDED, Outcome, Region
 from kswarms.analysis.statistics.intervals import bootstrap_interval

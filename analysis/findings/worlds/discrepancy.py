@@ -3,9 +3,9 @@
 import numpy as np
 
 from kswarms.analysis.findings.claims import Agreement, Claim, Compare, Overtake, Peak, Share, Trend
-from kswarms.analysis.findings.comparing import region_of
 from kswarms.analysis.findings.data import ClaimData, difference
-from kswarms.analysis.findings.learned_claims import cells_of
+from kswarms.analysis.findings.judges.comparing import region_of
+from kswarms.analysis.findings.judges.learned_claims import cells_of
 from kswarms.analysis.findings.verdicts import Region
 from kswarms.analysis.results.runs import Results
 from kswarms.analysis.statistics.curves import last_rise, spearman

@@ -10,10 +10,10 @@ from kswarms.analysis.findings.claims import Agreement, Claim
 from kswarms.analysis.findings.data import NoDataError
 from kswarms.analysis.findings.finding import Finding
 from kswarms.analysis.findings.judging import judge
+from kswarms.analysis.findings.worlds.discrepancy import discrepancy
 from kswarms.analysis.results.runs import Results
 from kswarms.analysis.statistics.curves import spearman
 from kswarms.analysis.text_tables import MISSING, TextTable
-from kswarms.analysis.worlds.discrepancy import discrepancy
 
 World = tuple[Mapping[str, float], Results]
 """The parameters of a world and the results of its games."""

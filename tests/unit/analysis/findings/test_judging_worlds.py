@@ -7,8 +7,8 @@ import pytest
 from kswarms.analysis.findings import Finding
 from kswarms.analysis.findings.claims import Compare
 from kswarms.analysis.findings.quantity import Quantity
+from kswarms.analysis.findings.worlds.judging import holds_on_average, judge_over_worlds, worlds_table
 from kswarms.analysis.results.runs import Results
-from kswarms.analysis.worlds.judging import holds_on_average, judge_over_worlds, worlds_table
 from tests.helpers.synthetic_results import S1, S2, runs
 
 LEADS = Compare(left=S2, relation=">", right=S1, over="mean over N")

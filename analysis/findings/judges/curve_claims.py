@@ -4,7 +4,7 @@ import math
 
 from kswarms.analysis.findings.claims import Overtake, Peak, Trend
 from kswarms.analysis.findings.data import ClaimData, NoDataError, difference, format_densities
-from kswarms.analysis.findings.evidence import joint_level, too_few_note
+from kswarms.analysis.findings.judges.evidence import joint_level, too_few_note
 from kswarms.analysis.findings.verdicts import FAILS, HOLDS, UNDECIDED, Outcome, Region
 from kswarms.analysis.statistics.curves import overtaking, rank_correlation_with_n
 from kswarms.analysis.statistics.intervals import Interval, bootstrap_interval

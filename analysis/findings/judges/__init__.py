@@ -1,0 +1,1 @@
+"""Judging each kind of claim: the interval of its effect, and its verdict."""
