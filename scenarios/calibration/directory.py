@@ -5,6 +5,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from kswarms.agents.common.atomic_files import remove_temporary_files
+from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.input_files import read_json
+from kswarms.model.description.parameters import Parameters, parse_parameters
 from kswarms.scenarios.calibration.calibration import ensemble_of
 from kswarms.scenarios.calibration.evidence import Evidence, Play, require_evidence
 from kswarms.scenarios.study.directory import GAMES_FILE, make_directory, write_json
@@ -30,6 +33,24 @@ class Directory:
         self._content["ensemble"] = ensemble_of(self._content["waves"], size)
         write_json(self.trace, self._content)
         return dict(self._content["ensemble"])
+
+
+def read_ensemble(out: Path) -> list[Parameters]:
+    """Return the worlds that a calibration found.
+
+    Raises
+    ------
+    InputError
+        The directory has no finished calibration.
+    """
+    try:
+        found = read_json("calibration", out / TRACE)["ensemble"]["worlds"]
+        worlds = [parse_parameters(each["parameters"]) for each in found]
+    except (ValueError, TypeError, KeyError):
+        worlds = []
+    if not worlds:
+        raise InputError("calibration", str(out), "must be the directory of a finished `kswarms calibrate`")
+    return worlds
 
 
 def open_calibration(out: Path, about: Mapping[str, Any], play: Play, fresh: bool = False) -> Directory:

@@ -34,6 +34,7 @@ COMMANDS: Final = {
     "merge": ("export", "merge", "Merge studies, such as shards, into one."),
     "replay": ("status", "replay", "Play one run again and compare the results."),
     "calibrate": ("calibrate", "calibrate", "Find the worlds that meet all targets."),
+    "findings": ("findings", "findings", "Judge findings in several worlds."),
     "explore": ("explore", "explore", "Open a page to watch and change games."),
     "film": ("film", "film", "Film a game or part of it."),
     "conflicts": ("conflicts", "conflicts", "List the conflicts of a game."),

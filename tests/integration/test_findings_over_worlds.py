@@ -1,0 +1,60 @@
+"""`kswarms findings`: verdicts in the default world and in worlds of a calibration."""
+
+import json
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from kswarms.scenarios.cli import invoke
+
+pytestmark = pytest.mark.usefixtures("empty_directory")
+
+FINDINGS = """
+[[findings]]
+id = "fast-pucks"
+statement = "Two avoiding swarms of three gather something."
+[findings.claim]
+kind = "compare"
+left = { scenario = "fig-6.1a" }
+relation = ">"
+right = 0
+densities = [6]
+"""
+WORLDS = ["fitted, friction=0.7, push_share=1.0", "fitted, station_radius=0.001, base_radius=0.001"]
+COMMAND = ["findings", "--findings", "mine.toml", "--densities", "6", "--seeds", "2", "--jobs", "1"]
+
+
+@pytest.fixture(autouse=True)
+def _files(empty_directory: Path) -> None:
+    Path("mine.toml").write_text(FINDINGS)
+    Path("calibration").mkdir()
+    ensemble = {"factor": 1.0, "worlds": [{"parameters": text} for text in WORLDS]}
+    Path("calibration/calibration.json").write_text(json.dumps({"ensemble": ensemble}))
+
+
+def test_verdicts_count_the_worlds(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke([*COMMAND, "--worlds", "1"]) == 0
+    assert "1 of 1 worlds" in capsys.readouterr().out
+    (row,) = pd.read_csv("findings/findings.csv").to_dict("records")
+    assert (row["finding"], row["holds"], row["worlds"], row["depends"]) == ("fast-pucks", 1, 1, False)
+    played = {path.name: pd.read_parquet(path / "runs.parquet") for path in Path("findings").glob("*/")}
+    assert set(played) == {"default", "world-01"}
+    assert set(played["world-01"]["run"]) & set(played["default"]["run"]) == set()
+    assert set(played["default"]["seed"]) == {3000, 3001}
+
+
+@pytest.mark.parametrize(
+    ("words", "error"),
+    [
+        (["--worlds", "3"], "worlds=3: must be at most 2, the worlds in calibration"),
+        (["--worlds", "1", "--calibration", "none"], "calibration='none': must be the directory of a finished"),
+        (["--densities", "7"], "densities='7': must suit at least one scenario"),
+    ],
+)
+def test_invalid_options_are_refused_and_nothing_is_written(
+    words: list[str], error: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke([*COMMAND, *words]) == 2
+    assert capsys.readouterr().err.startswith(f"kswarms: {error}")
+    assert not Path("findings").exists()
