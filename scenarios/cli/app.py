@@ -35,6 +35,7 @@ COMMANDS: Final = {
     "replay": ("status", "replay", "Play one run again and compare the results."),
     "calibrate": ("calibrate", "calibrate", "Find the worlds that meet all targets."),
     "findings": ("findings", "findings", "Judge findings in several worlds."),
+    "sensitivity": ("sensitivity", "sensitivity", "Show which parameters a measure depends on."),
     "explore": ("explore", "explore", "Open a page to watch and change games."),
     "film": ("film", "film", "Film a game or part of it."),
     "conflicts": ("conflicts", "conflicts", "List the conflicts of a game."),

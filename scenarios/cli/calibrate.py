@@ -56,7 +56,7 @@ def calibrate(
         for number, seeds in enumerate(chosen.seeds, 1)
     ]
     about = {"setup": setup.model_dump(mode="json"), "targets": chosen.model_dump(mode="json")}
-    directory = open_calibration(out, about, partial(_play, jobs), fresh)
+    directory = open_calibration(out, about, partial(play_runs, jobs), fresh)
     for number, wave in enumerate(calibrate(setup, stages, directory.evidence), 1):
         directory.write(wave)
         print_line(
@@ -76,6 +76,7 @@ def _judge(targets: Sequence[Any], rows: Any) -> Mapping[str, float]:
     return {target.id: target.implausibility(results) for target in targets}
 
 
-def _play(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, Outcome], None, None]:
-    with closing(play_tracked(runs, jobs, "", "calibrating")) as played:
+def play_runs(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, Outcome], None, None]:
+    """Play runs with a progress bar."""
+    with closing(play_tracked(runs, jobs, "", "playing")) as played:
         yield from played
