@@ -69,8 +69,16 @@ def test_equal_swarms_score_alike(policies: str) -> None:
 
 
 @pytest.mark.slow
-def test_a_faster_swarm_scores_more() -> None:
-    assert not may_be_zero(score_differences(make_game("avoid,avoid", 20, duration=400.0, drive=0.7), 240))
+@pytest.mark.parametrize(
+    ("drive", "seeds"),
+    [
+        (0.8, 60),  # as many as above; the mean is 4.6 times its standard error
+        pytest.param(0.7, 240, marks=pytest.mark.full),
+    ],
+)
+def test_a_faster_swarm_scores_more(drive: float, seeds: int) -> None:
+    game = make_game("avoid,avoid", 20, duration=400.0, drive=drive)
+    assert not may_be_zero(score_differences(game, seeds))
 
 
 @pytest.mark.slow
