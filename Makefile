@@ -8,6 +8,8 @@ RUN := $(VENV)/.installed
 EXPLORE := $(VENV)/.installed-explore
 TEST := $(VENV)/.installed-test
 DEMO := results/demo
+# The files with the longest tests come first, see tests/conftest.py.
+PARALLEL := -n auto --dist loadfile --no-loadscope-reorder
 
 .DEFAULT_GOAL := help
 ifndef INSTALLED
@@ -34,8 +36,8 @@ explore: $(EXPLORE)  ## open a page to watch, change and inspect games
 # Slow tests run without coverage, which would double the time of many of them.
 test: lint  ## run all checks: lint, types, documentation, tests with coverage
 	@$(MAKE) --no-print-directory -j2 --output-sync=recurse INSTALLED=1 types docs
-	$(BIN)/python -m pytest -n auto --dist loadfile -m "not slow and not full" --cov --cov-report=term-missing:skip-covered
-	$(BIN)/python -m pytest -n auto --dist loadfile -m "slow and not full"
+	$(BIN)/python -m pytest $(PARALLEL) -m "not slow and not full" --cov --cov-report=term-missing:skip-covered
+	$(BIN)/python -m pytest $(PARALLEL) -m "slow and not full"
 
 lint: $(TEST)  ## check style (ruff) and the direction of imports (import-linter)
 	$(BIN)/ruff check .
@@ -61,7 +63,7 @@ peers: $(RUN)  ## measure other simulators, installed into a temporary environme
 	$(BIN)/python -m benchmarks.peers
 
 full: $(TEST)  ## run all tests with the full numbers of seeds (long)
-	$(BIN)/python -m pytest -n auto --dist loadfile -m "full or not full" -o faulthandler_timeout=0
+	$(BIN)/python -m pytest $(PARALLEL) -m "full or not full" -o faulthandler_timeout=0
 
 clean:  ## remove the environment and all caches; keep results/
 	rm -rf $(VENV) .versions build dist site .pytest_cache .hypothesis .mypy_cache .ruff_cache .coverage .coverage.* htmlcov

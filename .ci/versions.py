@@ -6,8 +6,10 @@ with the newest libraries.
 """
 
 import argparse
+import contextlib
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -30,6 +32,7 @@ from importlib.metadata import version
 names = "mesa", "numpy", "numba", "pandas", "pyarrow"
 print(f"Python {sys.version.split()[0]}", *(f"{name} {version(name)}" for name in names), sep=", ")
 """
+PASSED, FAILED, UNFINISHED = "passed", "FAILED", "not finished in time"
 
 
 def find_python(version: str) -> str | None:
@@ -58,34 +61,54 @@ class Budget:
         """Return whether a further environment would end in time."""
         return self._end is None or time.monotonic() + self._about <= self._end
 
+    def left(self) -> float | None:
+        """Return the time that is left (s), or None without a limit."""
+        return None if self._end is None else max(0.0, self._end - time.monotonic())
+
     def spent(self, seconds: float) -> None:
         """Note the duration of an environment."""
         self._about = max(self._about, seconds)
 
 
+def run(command: list[str | Path], limit: float | None) -> str:
+    """Run a command, and stop it and its children after some time (s); return what came of it."""
+    with subprocess.Popen(command, cwd=ROOT, start_new_session=True) as process:
+        try:
+            return PASSED if process.wait(limit) == 0 else FAILED
+        except subprocess.TimeoutExpired:
+            return UNFINISHED
+        finally:
+            with contextlib.suppress(ProcessLookupError):  # all have ended
+                os.killpg(process.pid, signal.SIGKILL)
+
+
 def check(name: str, python: str, options: list[str], tests: list[str], budget: Budget) -> bool:
-    """Install kswarms into an environment, with options of pip, and run tests; return whether they pass."""
+    """Install kswarms into an environment, with options of pip, and run tests; return whether none failed.
+
+    Tests that do not finish in time are stopped. They have not failed.
+    """
     started = time.monotonic()
     environment = ROOT / ".versions" / name
     own = environment / "bin" / "python"
     quiet = ["--quiet", "--disable-pip-version-check", "--no-input", "--no-compile"]
-    commands = [
+    commands: list[list[str | Path]] = [
         [python, "-m", "venv", "--clear", environment],
         [own, "-m", "pip", "install", *quiet, *options, "-e", ".[pytest]"],
         [own, "-c", REPORT],
         [own, "-m", "pytest", "-q", "-n", "auto", "--dist", "loadfile", "-p", "no:cacheprovider", *tests],
     ]
-    passed = all(subprocess.run(command, cwd=ROOT, check=False).returncode == 0 for command in commands)
+    outcomes = (run(command, budget.left()) for command in commands)
+    outcome = next((each for each in outcomes if each != PASSED), PASSED)
     budget.spent(time.monotonic() - started)
-    print(f"{name}: {'passed' if passed else 'FAILED'} in {time.monotonic() - started:.0f} s", flush=True)
-    return passed
+    print(f"{name}: {outcome}, {time.monotonic() - started:.0f} s", flush=True)
+    return outcome != FAILED
 
 
 def main() -> int:
     """Check all environments; return the exit status."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--short", action="store_true", help="run a part of the tests")
-    parser.add_argument("--within", type=float, help="skip the environments that would end later (s)")
+    parser.add_argument("--within", type=float, help="skip or stop environments that would end later (s)")
     parser.add_argument("--about", type=float, default=0.0, help="expected time of the first one (s)")
     given = parser.parse_args()
     short, budget = given.short, Budget(given.within, given.about)

@@ -23,6 +23,25 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 # Assertions in helper modules show their values, as in tests.
 pytest.register_assert_rewrite("tests.helpers", "tests.reference", "tests.baseline")
 
+FIRST = (
+    *("tests/outcomes/test_learning.py", "tests/outcomes/test_argos.py", "tests/baseline/test_baseline.py"),
+    *("tests/integration/test_explore_browser.py", "tests/integration/test_cluster.py"),
+    *(
+        "tests/integration/test_report.py",
+        "tests/outcomes/test_fairness.py",
+        "tests/integration/test_runner.py",
+    ),
+    *("tests/integration/test_documentation.py", "tests/integration/test_calibrate.py"),
+)
+"""Files that take longest. They run first: if a process started one of them last, the others would wait."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put the tests of the longest files first."""
+    place = {name: k for k, name in enumerate(FIRST)}
+    items.sort(key=lambda item: place.get(item.nodeid.partition("::")[0], len(place)))
+
+
 Pose = tuple[float, float, float]
 Scene = Callable[..., GameModel]
 

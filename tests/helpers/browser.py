@@ -36,6 +36,15 @@ def open_browser(*flags: str) -> Iterator[Any]:
         driver.quit()
 
 
+def forget(driver: Any) -> None:
+    """Leave the page, and forget its cookies, its messages, its requests and the size of its window."""
+    driver.get("about:blank")
+    for command in ("Network.clearBrowserCookies", "Emulation.clearDeviceMetricsOverride"):
+        driver.execute_cdp_cmd(command, {})
+    for log in ("browser", "performance"):
+        driver.get_log(log)
+
+
 class Request(NamedTuple):
     """A request of a page; its status is None without an answer, and 101 for an open WebSocket."""
 

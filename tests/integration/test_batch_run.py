@@ -15,33 +15,45 @@ from tests.helpers.mesa_versions import HAS_RNG, sample_labels
 
 SCRIPT = """
 import json
-import sys
 
 import mesa
 
 from kswarms.model.foraging import ForagingModel
 
-if __name__ == "__main__":
-    rows = mesa.batch_run(
+def sweep(processes, period):
+    return mesa.batch_run(
         ForagingModel,
         {"n": [6, 13], "policies": ["avoid,attack", "mixed"], "seed": range(2), "puck_limit": [0, 1],
          "duration": 47.0},
-        number_processes=int(sys.argv[1]),
-        data_collection_period=int(sys.argv[2]),
+        number_processes=processes,
+        data_collection_period=period,
         display_progress=False,
     )
-    print(json.dumps(rows))
+
+if __name__ == "__main__":
+    print(json.dumps(sweep(2, 1)))
 """
 
 Row = dict[str, Any]
 
 
-def run_script(folder: Path, processes: int, period: int) -> list[Row]:
-    """Run the script in a new interpreter, outside the repository."""
+def run_here(period: int) -> list[Row]:
+    """Run the sweep of the script in this process; its rows are those of JSON."""
+    names: dict[str, Any] = {"__name__": "sweep"}
+    exec(SCRIPT, names)
+    return in_order(json.loads(json.dumps(names["sweep"](1, period))))
+
+
+def in_order(rows: list[Row]) -> list[Row]:
+    return sorted(rows, key=lambda row: (row["RunId"], row["Step"]))
+
+
+def run_script(folder: Path) -> list[Row]:
+    """Run the script with two processes in a new interpreter, outside the repository."""
     script = folder / "sweep.py"
     script.write_text(SCRIPT)
     done = subprocess.run(
-        [sys.executable, "-W", "error", str(script), str(processes), str(period)],
+        [sys.executable, "-W", "error", str(script)],
         cwd=folder,
         env={**os.environ, "PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path)},
         capture_output=True,
@@ -49,8 +61,7 @@ def run_script(folder: Path, processes: int, period: int) -> list[Row]:
         check=False,
     )
     assert (done.returncode, done.stderr) == (0, "")
-    rows: list[Row] = json.loads(done.stdout)
-    return sorted(rows, key=lambda row: (row["RunId"], row["Step"]))
+    return in_order(json.loads(done.stdout))
 
 
 def play_game(row: Row) -> ForagingModel:
@@ -63,8 +74,8 @@ def play_game(row: Row) -> ForagingModel:
 
 @pytest.mark.slow
 def test_two_processes_give_the_rows_of_one(tmp_path: Path) -> None:
-    one, two = (run_script(tmp_path, processes, 1) for processes in (1, 2))
-    assert one == two
+    one = run_here(1)
+    assert run_script(tmp_path) == one
     assert len({row["RunId"] for row in one}) == 16
     steps = [(row["Step"], row["time"]) for row in one if row["RunId"] == 0]
     times = [0.0, 10.0, 20.0, 30.0, 40.0, 47.0]
@@ -80,9 +91,8 @@ def test_two_processes_give_the_rows_of_one(tmp_path: Path) -> None:
     assert len({row["time"] for row in ends.values()}) > 2
 
 
-@pytest.mark.slow
-def test_the_last_row_is_the_state_at_the_end(tmp_path: Path) -> None:
-    rows = run_script(tmp_path, 1, -1)  # −1: the last sample of each run only
+def test_the_last_row_is_the_state_at_the_end() -> None:
+    rows = run_here(-1)  # −1: the last sample of each run only
     assert [row["RunId"] for row in rows] == list(range(16))
     assert {row["time"] for row in rows if row["puck_limit"] == 0} == {47.0}
     for row in rows:

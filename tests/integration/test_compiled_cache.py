@@ -115,7 +115,7 @@ def test_cache_files_that_are_damaged_are_replaced_and_old_ones_deleted(package:
         path.write_bytes(b"\x80\x05damaged")
     assert package.run() == ("4.0", "")
     code = f"from kswarms.agents.common import jit; jit._MAX_FILES = 4; {CALL}"
-    for summand in range(3):
+    for summand in (2.0, 3.0):
         package.write(summand)
         assert package.run(code)[0] == str(2.0 + 2.0 * summand)
     assert len(package.files()) == 8  # an index and a data file for each of two digests in two folders

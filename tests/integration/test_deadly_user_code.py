@@ -2,6 +2,7 @@
 
 import re
 import time
+from collections.abc import Mapping
 from concurrent.futures import BrokenExecutor
 from multiprocessing import active_children
 from pathlib import Path
@@ -18,7 +19,7 @@ from kswarms.scenarios.runs import processes, trial, workers
 from kswarms.scenarios.runs.outcome import Failure, Outcome
 from kswarms.scenarios.runs.run import Run, expand
 from kswarms.scenarios.runs.sweep import sweep
-from kswarms.scenarios.runs.trial import require_trials
+from kswarms.scenarios.runs.trial import failed_trials, require_trials
 from kswarms.scenarios.study.database import LEDGER_FILE
 from kswarms.scenarios.study.ledger import Ledger
 
@@ -82,11 +83,9 @@ def scenario(policy: str, n: int = 6, seeds: int = 1) -> Scenario:
     return Scenario(id="mine", title="Own code", densities=(n,), seeds=seeds, conditions=(condition,))
 
 
-def failures(runs: list[Run], run_limit: float | None = None) -> list[str]:
+def failures(runs: list[Run]) -> list[str]:
     """Play runs and return the errors of those that fail."""
-    return [
-        result.error for _, result, _ in sweep(runs, 1, "", None, run_limit) if isinstance(result, Failure)
-    ]
+    return [result.error for _, result, _ in sweep(runs) if isinstance(result, Failure)]
 
 
 HIDDEN = {
@@ -94,15 +93,30 @@ HIDDEN = {
     "numpy": "int(np.random.random() < 0.5)",
     "counter": "Mine.chosen // 3 % 2",
     "clock": "int(time.time() / 1e4 * 2 ** (self.own % 9)) % 2",
-    "hashes of texts": "hash(str(self.own)) // 8 % 2",
+    "hashes": "hash(str(self.own)) // 8 % 2",
 }
 """Expressions of an action that depend on more than the conflict and the seed."""
 STATEFUL = "its two trial games differ: does it use global random numbers or keep state between robots?"
 
 
-@pytest.mark.parametrize("index", HIDDEN.values(), ids=HIDDEN.keys())
-def test_hidden_state_is_detected_when_runs_are_planned(index: str) -> None:
-    games = [run.game for run in runs_of(index)]
+def trial_errors(files: Mapping[str, Mapping[str, str]]) -> dict[str, str]:
+    """Try policies in files with these parts, in the same processes; return the errors."""
+    games = {}
+    for name, parts in files.items():
+        runs_of(**parts)
+        Path("mine.py").rename(f"{name}.py")
+        (run,) = expand([scenario(f"{name}.py:Mine")])
+        games[run.game] = name
+    return {games[game]: failure.error for game, failure in failed_trials(games).items()}
+
+
+def test_hidden_state_is_detected() -> None:
+    found = trial_errors({name: {"index": index} for name, index in HIDDEN.items()})
+    assert found == {name: f"InputError: policy='{name}.py:Mine': {STATEFUL}" for name in HIDDEN}
+
+
+def test_hidden_state_is_detected_when_runs_are_planned() -> None:
+    games = [run.game for run in runs_of(HIDDEN["counter"])]
     with pytest.raises(InputError, match=f"policy='mine.py:Mine': {re.escape(STATEFUL)}"):
         require_trials(games)
 
@@ -135,11 +149,12 @@ def test_a_factory_of_this_process_may_share_state_between_robots() -> None:
 RAISED = ["raise KeyboardInterrupt", "sys.exit('no')", "raise GeneratorExit", "raise BaseException('no')"]
 
 
-@pytest.mark.parametrize(("code", "place"), [*zip(RAISED, ["at_import", "construct"] * 2, strict=True)])
-def test_an_exception_that_ends_processes_is_an_error_of_the_code(code: str, place: str) -> None:
-    games = [run.game for run in runs_of(**{place: code})]
-    with pytest.raises(InputError, match=r"policy='mine.py:Mine': .* raises \w+"):
-        require_trials(games)
+def test_an_exception_that_ends_processes_is_an_error_of_the_code() -> None:
+    places = ["at_import", "construct"] * 2
+    errors = trial_errors({f"f{k}": {place: RAISED[k]} for k, place in enumerate(places)})
+    assert list(errors) == ["f0", "f1", "f2", "f3"]
+    for name, error in errors.items():
+        assert re.match(rf"InputError: policy='{name}.py:Mine': .* raises \w+", error)
 
 
 DEADLY = {
@@ -171,35 +186,57 @@ def test_endless_code_fails_its_runs(place: str, monkeypatch: pytest.MonkeyPatch
     assert failures(runs) == ["policy='mine.py:Mine': its trial took longer than 0.3 s"] * 2
 
 
-LATE = "0 if self.own <= 20 else [CODE, 0][1]"
-"""An action; after the 19 conflicts of a trial game, code is executed."""
+LATE = """
+import os
+import time
+
+class Endless:
+    def __init__(self, setting):
+        self.actions = setting.actions
+        self.own = 0
+
+    def choose(self, opponent):
+        self.own += 1
+        if self.own > 20:
+            self.act()
+        return self.actions[0]
+
+    def act(self):
+        sum(0 for _ in iter(int, 1))
+
+class Deaf(Endless):
+    def act(self):
+        while True:
+            try: time.sleep(100)
+            except BaseException: pass
+
+class Ending(Endless):
+    def act(self):
+        os._exit(0)
+"""
+"""Policies that misbehave after the 19 conflicts of a trial game."""
 
 
 @pytest.mark.slow
-def test_a_run_that_exceeds_its_limit_fails_and_no_other_is_lost() -> None:
-    late = runs_of(LATE.replace("CODE", ENDLESS), n=30)
+def test_runs_that_exceed_or_ignore_their_limit_fail_and_no_other_is_lost() -> None:
+    Path("late.py").write_text(LATE)
+    late = {name: expand([scenario(f"late.py:{name}", n=30)])[0] for name in ("Endless", "Deaf")}
     others = expand([scenario("attack", seeds=2)])
-    results = {run.digest: result for run, result, _ in sweep([*late, *others], 1, run_limit=2.0)}
-    assert isinstance(failure := results.pop(late[0].digest), Failure)
-    assert failure.error == "TimeLimitError: took longer than 2 s"
-    assert 'mine.py", line' in failure.trace.splitlines()[-3]
+    results = {run.digest: result for run, result, _ in sweep([*late.values(), *others], 1, run_limit=2.0)}
+    failed = {name: results.pop(run.digest) for name, run in late.items()}
+    assert {name: result.error for name, result in failed.items() if isinstance(result, Failure)} == {
+        "Endless": "TimeLimitError: took longer than 2 s",
+        "Deaf": "took longer than 2 s; its worker was killed",
+    }
+    assert 'late.py", line' in failed["Endless"].trace.splitlines()[-3]
     assert results == {run.digest: result for run, result, _ in sweep(others)}
-
-
-@pytest.mark.slow
-def test_a_run_that_ignores_its_limit_is_killed() -> None:
-    ignore = "while self.own > 20:\n            try: time.sleep(100)\n            except BaseException: pass"
-    runs = runs_of("0", n=30)
-    code = Path("mine.py").read_text()
-    Path("mine.py").write_text(code.replace("self.own += 1", f"self.own += 1\n        {ignore}"))
-    runs = expand([scenario("mine.py:Mine", n=30)])
-    assert failures(runs, run_limit=1.0) == ["took longer than 1 s; its worker was killed"]
 
 
 @pytest.mark.slow
 def test_a_run_that_ends_its_process_after_the_trial_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(processes, "MAX_DEATHS", 1)
-    runs = runs_of(LATE.replace("CODE", "os._exit(0)"), n=30)
+    Path("late.py").write_text(LATE)
+    runs = expand([scenario("late.py:Ending", n=30)])
     assert failures(runs) == ["its worker process died 1 times: killed or out of memory?"]
 
 

@@ -51,11 +51,11 @@ def test_the_same_seed_gives_the_same_bytes_in_one_process() -> None:
 
 
 @pytest.mark.slow
-def test_the_same_seed_gives_the_same_bytes_in_four_fresh_processes_in_any_order() -> None:
+def test_the_same_seed_gives_the_same_bytes_in_fresh_processes_in_any_order() -> None:
     jobs = [(name, seed) for name in GAMES for seed in range(4)]
     here = {job: digest(job) for job in jobs}
     shuffled = random.Random(5).sample(jobs, len(jobs))
-    with ProcessPoolExecutor(4, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
         there = dict(zip(shuffled, pool.map(digest, shuffled), strict=True))
     assert here == there
     assert len(set(here.values())) == len(jobs)

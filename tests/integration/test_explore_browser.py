@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from kswarms.scenarios.cli import invoke
-from tests.helpers.browser import needs_browser, open_browser, requests, webdriver
+from tests.helpers.browser import forget, needs_browser, open_browser, requests, webdriver
 from tests.helpers.explore_server import PATIENCE, serve
 
 pytest.importorskip("solara", reason="needs the extra `explore`")
@@ -98,14 +97,19 @@ class Browser:
         return [request.url for request in requests(self.driver)]
 
 
+@pytest.fixture(scope="module")
+def driver() -> Iterator[Any]:
+    with open_browser() as driver:
+        yield driver
+
+
 @pytest.fixture
-def browse(address: str) -> Iterator[Callable[..., Browser]]:
-    with ExitStack() as opened:
+def browse(driver: Any, address: str) -> Iterator[Callable[..., Browser]]:
+    def browse(size: tuple[int, int] = (1360, 950), address: str = address) -> Browser:
+        return Browser(driver, address, size)
 
-        def browse(size: tuple[int, int] = (1360, 950), address: str = address) -> Browser:
-            return Browser(opened.enter_context(open_browser()), address, size)
-
-        yield browse
+    yield browse
+    forget(driver)
 
 
 def test_the_page_plays_changes_and_shows_a_learner(browse: Callable[..., Browser], address: str) -> None:
@@ -116,7 +120,7 @@ def test_the_page_plays_changes_and_shows_a_learner(browse: Callable[..., Browse
     assert set(browser.driver.execute_script(shown)) == {"attack", "inter-learner"}  # no slider changed them
 
     browser.click("button", "play")
-    browser.wait(lambda: browser.time() < "learning, 2990" and browser.time().startswith("learning, 29"))
+    browser.wait(lambda: browser.time() < "learning, 2999" and browser.time().startswith("learning, 29"))
     before = browser.frames()
     browser.wait(lambda: browser.frames() > before + 10)
     browser.click("button", "skip learning")

@@ -11,7 +11,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from tests.helpers.browser import needs_browser, open_browser, requests
+from tests.helpers.browser import forget, needs_browser, open_browser, requests
 from tests.helpers.explore_server import PATIENCE, serve
 
 pytest.importorskip("solara", reason="needs the extra `explore`")
@@ -102,12 +102,20 @@ def evil_port() -> Iterator[int]:
         server.shutdown()
 
 
-@pytest.fixture
-def browser() -> Iterator[Any]:
-    """Return a browser in which any name of a host leads to this machine."""
+@pytest.fixture(scope="module")
+def started() -> Iterator[Any]:
+    """Start a browser in which any name of a host leads to this machine."""
     with open_browser("host-resolver-rules=MAP *.example 127.0.0.1") as driver:
         driver.set_script_timeout(PATIENCE)
         yield driver
+
+
+@pytest.fixture
+def browser(started: Any) -> Iterator[Any]:
+    """Return this browser, without cookies and files of pages that it has shown."""
+    yield started
+    forget(started)
+    started.execute_cdp_cmd("Network.clearBrowserCache", {})
 
 
 def answers(driver: Any, page: str) -> list[int | None]:

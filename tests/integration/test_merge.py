@@ -64,7 +64,7 @@ def test_merged_shards_have_the_tables_of_one_study(before_games: Callable[[Faul
     before_games(games.append)
     for part in ("1", "2", "3"):
         assert invoke([*RUN, "--shard", f"{part}/3", "--order", "seeds", "--out", part]) == 0
-    assert len(games) == 80
+    assert len(games) == 40
     before = files("1", "2", "3")
     assert invoke(["merge", "all", "1", "2"]) == 0
     assert read_tables("all") != whole
@@ -75,7 +75,7 @@ def test_merged_shards_have_the_tables_of_one_study(before_games: Callable[[Faul
     assert shards == ["1/3", "2/3", "3/3"]
     assert read_sessions("all")[-1]["merged"] == ["3", "1"]
     assert invoke([*RUN, "--out", "all"]) == 0
-    assert len(games) == 80  # nothing is left to play
+    assert len(games) == 40  # nothing is left to play
 
 
 def test_the_order_of_play_does_not_change_tables(before_games: Callable[[Fault], None]) -> None:

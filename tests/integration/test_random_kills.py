@@ -97,7 +97,7 @@ def test_a_merge_ended_at_any_moment_is_repeated_to_the_same_tables(number: int)
 
 @pytest.mark.parametrize("number", [4, pytest.param(40, marks=pytest.mark.full)])
 def test_an_export_ended_at_any_moment_replaces_all_tables_or_none(number: int) -> None:
-    assert invoke([*RUN, "--seeds", "10"]) == 0
+    assert invoke([*RUN, "--seeds", "5"]) == 0
     old = read_tables("results")
     with Study(Path("results")) as study:
         list(study.play(study.plan([TINY], records=["robots"]), records=["robots"]))

@@ -52,7 +52,7 @@ def test_a_signal_keeps_finished_runs_and_writes_tables(
     assert read_sessions()[0]["status"] == f"stopped: {number.name}"
     assert len(read_tables("results")) == 3
     assert invoke(RUN) == 0
-    assert len(games) == 80 + 1
+    assert len(games) == 40 + 1
     assert read_sessions()[1]["runs"]["done before"] == 7
     assert read_tables("results") == uninterrupted_tables()
 
@@ -66,7 +66,7 @@ def test_a_signal_does_not_interrupt_the_writing_of_tables(
 
     def send(model: GameModel) -> None:
         games.append(model)
-        if first and len(games) == 80:
+        if first and len(games) == 40:
             signal.raise_signal(first)
 
     real = Path.replace
@@ -160,7 +160,7 @@ def test_a_closed_terminal_loses_no_results(style: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("number", [signal.SIGTERM, pytest.param(signal.SIGHUP, marks=pytest.mark.full)])
 def test_signals_end_the_page(number: signal.Signals) -> None:
     pytest.importorskip("solara")
     command = [sys.executable, "-m", "kswarms.scenarios.cli", "explore", "--no-browser", "--port", "0"]

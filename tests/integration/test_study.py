@@ -147,7 +147,7 @@ def test_status_counts_missing_runs(capsys: pytest.CaptureFixture[str]) -> None:
             if k == 9:
                 break
     assert invoke(["status", "results"]) == 0
-    assert capsys.readouterr().out.splitlines()[1].split()[:4] == ["tiny", "10", "0", "70"]
+    assert capsys.readouterr().out.splitlines()[1].split()[:4] == ["tiny", "10", "0", "30"]
     assert pq.read_table("results/runs.parquet").num_rows == 20
 
 

@@ -22,7 +22,9 @@ def played() -> Play:
 
 def play(ids: tuple[str, ...], densities: tuple[int, ...], seeds: int, first_seed: int) -> Results:
     scenarios = [CATALOGUE[name].replace(densities=densities, seeds=seeds) for name in ids]
-    games = list(play_all(expand(scenarios, first_seed), jobs=2))
+    planned = expand(scenarios, first_seed)
+    # For few games, the start of worker processes takes longer than they save.
+    games = list(play_all(planned, jobs=2 if len(planned) > 100 else 1))
     runs = result_table(games)
     assert len(runs.drop_duplicates(["scenario", "n", "seed"])) == len(ids) * len(densities) * seeds
     learned = result_table(games, "policies")

@@ -37,7 +37,9 @@ class Sample(NamedTuple):
     scenarios: tuple[tuple[str, ...], ...] = LEARNING  # in groups that are played together
 
 
-FEW = Sample((6, 30, 50), seeds=8)
+FEW = Sample((6, 30, 50), seeds=8, scenarios=LEARNING[:1])
+# All robots learn flight within their swarm, so there is no variation between seeds.
+EXTREMES = Sample((6, 50), seeds=4, scenarios=LEARNING[1:])
 ALL = Sample(DENSITIES, seeds=20)
 # Scores of few robots vary most between seeds, and their games are the fastest.
 SPARSE = Sample((6, 10, 16), seeds=20, scenarios=(("fig-6.4b",),))
@@ -106,7 +108,13 @@ def test_against_attackers_the_learner_scores_clearly_more(sample: Sample, outco
     assert verdict.verdict == HOLDS, str(verdict)
 
 
-@each_sample
+@pytest.mark.parametrize(
+    "sample",
+    [
+        pytest.param(EXTREMES, id="extremes", marks=pytest.mark.slow),
+        pytest.param(ALL, id="all", marks=pytest.mark.full),
+    ],
+)
 @pytest.mark.parametrize("figure", ["6.6", "6.7", "6.8"])
 def test_more_than_99_percent_learn_flight_within_the_swarm(
     figure: str, sample: Sample, outcomes: Outcomes

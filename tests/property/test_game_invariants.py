@@ -118,12 +118,31 @@ def check_results(model: GameModel) -> None:
         assert (rows[0]["t_a_inter"], rows[0]["conflicts_inter"]) == (0, 0)
 
 
+any_game = given(
+    games(), st.integers(0, 2**32), st.dictionaries(st.integers(0, 150), st.integers(0, 79), max_size=9)
+)
+jam_at_the_walls = example(make_game("aggressive", "aggressive", size=25, duration=20.0), 0, {})
+
+
 @pytest.mark.slow
-@settings(max_examples=300)
-@given(games(), st.integers(0, 2**32), st.dictionaries(st.integers(0, 150), st.integers(0, 79), max_size=9))
-@example(make_game("aggressive", "aggressive", size=25, duration=20.0), 0, {})  # jams at the walls
+@settings(max_examples=100)
+@any_game
+@jam_at_the_walls
 def test_bodies_times_and_pucks_in_every_period(game: Game, seed: int, removals: dict[int, int]) -> None:
-    """`removals` are rows of robots that are removed, by period."""
+    check_every_period(game, seed, removals)
+
+
+@pytest.mark.full
+@settings(max_examples=1000)
+@any_game
+def test_bodies_times_and_pucks_in_every_period_of_many_games(
+    game: Game, seed: int, removals: dict[int, int]
+) -> None:
+    check_every_period(game, seed, removals)
+
+
+def check_every_period(game: Game, seed: int, removals: dict[int, int]) -> None:
+    """Play a game and check it in every period; `removals` are rows of robots that are removed, by period."""
     model = GameModel(game.replace(sample_period=game.parameters.period), seed)
     while not model.ended:
         if model.now in removals and model.robots:
@@ -192,7 +211,11 @@ def dense_game(policies: str, n: int, preempt: bool = False) -> Game:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "policies", ["avoid,avoid", "avoid,attack", "attack,attack", "flight,fight", "attack,flight"]
+    "policies",
+    [
+        *("avoid,avoid", "attack,attack", "attack,flight"),
+        *(pytest.param(policies, marks=pytest.mark.full) for policies in ("avoid,attack", "flight,fight")),
+    ],
 )
 def test_robots_that_do_not_fight_keep_moving(policies: str) -> None:
     # The maximum in 4 games of 300 s of each kind was 22 s.
@@ -216,7 +239,13 @@ def test_fighters_block_each_other_until_they_flee(policies: str, preempt: bool)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("policies", ["avoid", "attack", "aggressive", "mixed", "fight"])
+@pytest.mark.parametrize(
+    "policies",
+    [
+        *("avoid", "aggressive", "fight"),
+        *(pytest.param(policies, marks=pytest.mark.full) for policies in ("attack", "mixed")),
+    ],
+)
 def test_bodies_in_long_jams(policies: str) -> None:
     for seed, n in enumerate((50, 70, 80)):
         model = GameModel(dense_game(f"{policies},{policies}", n), seed)

@@ -18,9 +18,21 @@ from tests.reference.states import Scene, make_scene, scenes
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=400)
+@settings(deadline=None, max_examples=150)
 @given(scenes())
 def test_a_period_equals_the_reference(scene: Scene) -> None:
+    check_periods(scene)
+
+
+@pytest.mark.full
+@settings(deadline=None, max_examples=2000)
+@given(scenes())
+def test_a_period_equals_the_reference_in_many_scenes(scene: Scene) -> None:
+    check_periods(scene)
+
+
+def check_periods(scene: Scene) -> None:
+    """Compare the kernel with the reference for some periods."""
     kernel = scene.kernel()
     advance = compared(kernel, ReferenceKernel(scene.game, scene.arena), scene.states, [])
     for tick in range(3):

@@ -8,6 +8,7 @@ from scipy import stats
 from statsmodels.stats.power import TTestPower
 
 from kswarms.agents.common.errors import InputError
+from kswarms.analysis.statistics import comparisons
 from kswarms.analysis.statistics.comparisons import (
     additional_seeds,
     adjust_p_values,
@@ -19,7 +20,14 @@ from kswarms.analysis.statistics.intervals import Interval
 from tests.helpers.chance import is_plausible, normal_samples
 
 
+@pytest.fixture
+def _p_values_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave out the interval of a paired comparison, which takes most of its time."""
+    monkeypatch.setattr(comparisons, "bootstrap_interval", lambda *_, **_options: Interval(0.0, 0.0, 0.0))
+
+
 @pytest.mark.slow
+@pytest.mark.usefixtures("_p_values_only")
 def test_a_true_null_hypothesis_is_rejected_in_about_5_percent_of_cases() -> None:
     # The part that both share cancels in the difference.
     count, draws = 400, np.random.default_rng(1)
@@ -31,6 +39,7 @@ def test_a_true_null_hypothesis_is_rejected_in_about_5_percent_of_cases() -> Non
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("_p_values_only")
 def test_a_known_effect_is_found_with_the_stated_power() -> None:
     size, seeds, count = 0.8, 14, 300
     power = float(TTestPower().power(effect_size=size, nobs=seeds, alpha=0.05))

@@ -1,6 +1,6 @@
 """Contributions: games with and without each robot."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,8 @@ from kswarms.model.description.game import Game, Swarm
 from kswarms.model.game_model import GameModel
 from kswarms.scenarios.contribution.games import RECORD, contributions, parse_robots
 from kswarms.scenarios.contribution.table import FILE, SCHEMA, prepare_table, write_table
-from kswarms.scenarios.runs.run import digest
+from kswarms.scenarios.runs.outcome import Outcome
+from kswarms.scenarios.runs.run import Run, digest
 from kswarms.scenarios.runs.sweep import play_all
 
 LEARNER = "inter-learner(reward='individual(delta=0.2)')"
@@ -116,11 +117,12 @@ def test_robots_outside_the_game_and_games_with_absent_robots_are_refused() -> N
         contributions(GAME.replace(absent=(3,)), [1], [0])
 
 
-@pytest.mark.slow
-def test_the_number_of_workers_does_not_change_the_result() -> None:
+def test_the_order_of_outcomes_does_not_change_the_result() -> None:
+    def play_backwards(runs: Sequence[Run]) -> Iterator[tuple[Run, Outcome]]:
+        yield from reversed(list(play_all(runs, record=RECORD)))
+
     measure = partial(contributions, GAME, [0, 5], [0, 1], time_sud=count_conflicts)
-    two = measure(play=lambda runs: play_all(runs, 2, RECORD))
-    assert measure() == two
+    assert measure() == measure(play=play_backwards)
     assert measure() != contributions(GAME, [0, 5], [2, 3], time_sud=count_conflicts)
 
 
