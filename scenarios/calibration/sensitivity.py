@@ -1,7 +1,8 @@
-"""Sensitivity of a measure to the free parameters: Morris's elementary effects (Technometrics 33, 1991, 161-174).
+"""Sensitivity of a measure to the free parameters, by elementary effects.
 
-A trajectory changes one parameter after the other, each by two thirds of its range in the prior. An elementary
-effect is the change of the measure divided by the change of the position in the unit cube.
+The method is that of Morris (Technometrics 33, 1991, 161-174). A trajectory changes one parameter after the
+other, each by two thirds of its range in the prior. An elementary effect is the change of the measure divided
+by the change of the position in the unit cube.
 """
 
 from collections.abc import Callable, Sequence

@@ -69,7 +69,7 @@ def sensitivity(
     with output_path(out / TABLE, "out") as path:
         path.write_text("".join(",".join(row) + "\n" for row in [header, *rows]), encoding="utf-8")
     shown = [[row.parameter, *(f"{value:.3g}" for value in row[1:])] for row in found]
-    caption = f"{quantity.unit} for the whole range of a parameter; {trajectories} trajectories, {seeds} seeds"
+    caption = f"{quantity.unit}, for the range of a parameter; {trajectories} trajectories, {seeds} seeds"
     print_table(f"sensitivity of {quantity}", ["parameter", "μ*", "± (95 %)", "σ", "μ"], shown, caption)
     print_line(f"table: {out / TABLE}")
 

@@ -48,7 +48,7 @@ def test_verdicts_count_the_worlds(capsys: pytest.CaptureFixture[str]) -> None:
     ("words", "error"),
     [
         (["--worlds", "3"], "worlds=3: must be at most 2, the worlds in calibration"),
-        (["--worlds", "1", "--calibration", "none"], "calibration='none': must be the directory of a finished"),
+        (["--worlds", "1", "--calibration", "none"], "calibration='none': must be the dir"),
         (["--densities", "7"], "densities='7': must suit at least one scenario"),
     ],
 )

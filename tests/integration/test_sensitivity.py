@@ -40,7 +40,9 @@ def test_the_indices_are_printed_and_written(
         (["--densities", "7"], "n=7: must be a multiple of 2"),
     ],
 )
-def test_invalid_options_are_refused(words: list[str], error: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_invalid_options_are_refused(
+    words: list[str], error: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     pytest.importorskip("SALib", reason="needs the extra `sensitivity`")
     assert invoke([*COMMAND, *words]) == 2
     assert capsys.readouterr().err.startswith(f"kswarms: {error}")
@@ -49,8 +51,9 @@ def test_invalid_options_are_refused(words: list[str], error: str, capsys: pytes
 def test_without_the_library_one_line_says_what_to_install(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for name in [name for name in sys.modules if name.startswith(("SALib", "kswarms.scenarios.calibration.sens"))]:
-        monkeypatch.delitem(sys.modules, name)
+    for name in list(sys.modules):
+        if name.startswith(("SALib", "kswarms.scenarios.calibration.sensitivity")):
+            monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "SALib", None)
     assert invoke(COMMAND) == 2
     assert "must be installed: pip install kswarms[sensitivity]" in capsys.readouterr().err
