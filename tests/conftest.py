@@ -26,12 +26,8 @@ pytest.register_assert_rewrite("tests.helpers", "tests.reference", "tests.baseli
 FIRST = (
     *("tests/outcomes/test_learning.py", "tests/outcomes/test_argos.py", "tests/baseline/test_baseline.py"),
     *("tests/integration/test_explore_browser.py", "tests/integration/test_cluster.py"),
-    *(
-        "tests/integration/test_report.py",
-        "tests/outcomes/test_fairness.py",
-        "tests/integration/test_runner.py",
-    ),
-    *("tests/integration/test_documentation.py", "tests/integration/test_calibrate.py"),
+    *("tests/integration/test_report.py", "tests/outcomes/test_fairness.py"),
+    *("tests/integration/test_runner.py", "tests/integration/test_documentation.py"),
 )
 """Files that take longest. They run first: if a process started one of them last, the others would wait."""
 

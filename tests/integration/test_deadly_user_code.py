@@ -29,13 +29,11 @@ import random
 import signal
 import sys
 import time
-
 import numpy as np
 from kswarms.agents.learning.rewards import Reward
 from kswarms.agents.learning.selection_rules import Rule
 
 IMPORT
-
 
 class Mine:
     chosen = 0
@@ -50,7 +48,6 @@ class Mine:
         self.own += 1
         return self.actions[INDEX]
 
-
 class MyReward(Reward):
     def of(self, *conflict):
         return random.random()
@@ -62,9 +59,7 @@ class MyRule(Rule):
 """
 
 
-@pytest.fixture(autouse=True)
-def _change_to_an_empty_directory(empty_directory: Path) -> None:
-    pass
+pytestmark = pytest.mark.usefixtures("empty_directory")
 
 
 def runs_of(index: str = "0", at_import: str = "pass", construct: str = "pass", **fields: int) -> list[Run]:
