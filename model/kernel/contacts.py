@@ -10,6 +10,8 @@ of their gap g:
 
     c = p/2 (w_i + w_j)·n, but at least u_j·n + g/2 and at most u_i·n − g/2.
 
+A robot that may move as its drive commands has no contact: the other blocks nothing.
+
 Here u is the displacement that a robot's drive commands, w the robot's displacement in the last period
 (without relaxation), and p the push share. Two opposed drives of equal force cancel, so the common momentum
 remains. With p = 0 a robot never pushes one that stands.
@@ -90,9 +92,12 @@ def _meet_bodies(m: Memory, fastest: float) -> None:
         if towards_j + towards_i <= gap:
             continue
         last = (moved_x[i] + moved_x[j]) * dx + (moved_y[i] + moved_y[j]) * dy
-        common = min(towards_j - 0.5 * gap, max(0.5 * gap - towards_i, push_share * 0.5 * last))
-        _add_contact(contacts[i], count, i, dx, dy, common + 0.5 * gap)
-        _add_contact(contacts[j], count, j, -dx, -dy, 0.5 * gap - common)
+        least, most = 0.5 * gap - towards_i, towards_j - 0.5 * gap
+        common = min(most, max(least, push_share * 0.5 * last))
+        if common < most:  # else the other body blocks nothing
+            _add_contact(contacts[i], count, i, dx, dy, common + 0.5 * gap)
+        if common > least:
+            _add_contact(contacts[j], count, j, -dx, -dy, 0.5 * gap - common)
 
 
 @compiled_inner

@@ -251,6 +251,7 @@ def test_bodies_that_cannot_be_separated_are_an_error() -> None:
 
 @settings(deadline=None, max_examples=20)
 @given(angles, st.floats(-0.4, 0.4), st.floats(-0.01, 0.01), st.floats(-0.01, 0.01), frictions)
+@example(0.0, 0.375, 0.0, 0.0, 1.5)  # it drives away from one of them, which follows and must not hold it
 def test_a_robot_between_two_is_not_frozen(
     direction: float, turn: float, above: float, below: float, friction: float
 ) -> None:

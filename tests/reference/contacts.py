@@ -73,7 +73,7 @@ def meet_bodies(positions: Floats, moved: Floats, wanted: Floats, ground: Ground
     with np.errstate(invalid="ignore"):  # the diagonal
         common = np.clip(momentum, others + gap / 2, own - gap / 2)
     contacts: list[list[Contact]] = [[] for _ in positions]
-    for i, j in np.argwhere(closing):
+    for i, j in np.argwhere(closing & (common < own - gap / 2)):  # else j does not block i
         contacts[i].append(Contact(normal[i, j], common[i, j] + gap[i, j] / 2))
     return contacts
 
