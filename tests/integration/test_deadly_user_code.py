@@ -99,15 +99,15 @@ def trial_errors(files: Mapping[str, Mapping[str, str]]) -> dict[str, str]:
     games = {}
     for name, parts in files.items():
         runs_of(**parts)
-        Path("mine.py").rename(f"{name}.py")
-        (run,) = expand([scenario(f"{name}.py:Mine")])
+        Path("mine.py").rename(f"policy_{name}.py")
+        (run,) = expand([scenario(f"policy_{name}.py:Mine")])
         games[run.game] = name
     return {games[game]: failure.error for game, failure in failed_trials(games).items()}
 
 
 def test_hidden_state_is_detected() -> None:
     found = trial_errors({name: {"index": index} for name, index in HIDDEN.items()})
-    assert found == {name: f"InputError: policy='{name}.py:Mine': {STATEFUL}" for name in HIDDEN}
+    assert found == {name: f"InputError: policy='policy_{name}.py:Mine': {STATEFUL}" for name in HIDDEN}
 
 
 def test_hidden_state_is_detected_when_runs_are_planned() -> None:
@@ -149,7 +149,7 @@ def test_an_exception_that_ends_processes_is_an_error_of_the_code() -> None:
     errors = trial_errors({f"f{k}": {place: RAISED[k]} for k, place in enumerate(places)})
     assert list(errors) == ["f0", "f1", "f2", "f3"]
     for name, error in errors.items():
-        assert re.match(rf"InputError: policy='{name}.py:Mine': .* raises \w+", error)
+        assert re.match(rf"InputError: policy='policy_{name}.py:Mine': .* raises \w+", error)
 
 
 DEADLY = {
