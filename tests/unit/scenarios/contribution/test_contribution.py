@@ -74,8 +74,8 @@ def test_the_compared_games_equal_games_played_separately(absent_from: Any) -> N
 
 
 def test_the_reward_is_a_sum_over_conflicts_of_the_measured_game() -> None:
-    rows = {row["robot"]: row for row in contributions(GAME, [0, 6], [1])}
-    table = play_game(GAME, 1).tables()["conflicts"]
+    rows = {row["robot"]: row for row in contributions(GAME, [0, 6], [2])}
+    table = play_game(GAME, 2).tables()["conflicts"]
     conflicts = [dict(zip(table, values, strict=True)) for values in zip(*table.values(), strict=True)]
     measured = [row for row in conflicts if row["phase"] == "game"]
     for robot, swarm, reward in ((0, 1, WLU()), (6, 2, IndividualUtility(delta=0.2))):
