@@ -4,7 +4,6 @@ The result depends only on the settings and the targets, not on interruptions an
 resumed calibration is computed again from the games that it finds in its file.
 """
 
-import math
 from collections.abc import Callable, Generator, Mapping, Sequence
 from typing import Any, Final, NamedTuple, Self
 
@@ -92,7 +91,7 @@ def ensemble_of(waves: Sequence[Mapping[str, Any]], size: int) -> dict[str, Any]
         return {"factor": last["factor"], "worlds": last["worlds"]}
     nearest = sorted((world for wave in waves for world in wave["worlds"]), key=_worst)[:size]
     equal = [{**world, "weight": 1 / len(nearest)} for world in nearest]
-    return {"factor": max(map(_worst, nearest), default=math.inf), "worlds": equal}
+    return {"factor": max(map(_worst, nearest), default=last["factor"]), "worlds": equal}
 
 
 def _worst(world: Mapping[str, Any]) -> float:

@@ -123,7 +123,7 @@ def test_the_ensemble_is_the_last_wave_or_the_nearest_worlds_of_all() -> None:
         ("y", 1 / 3),
     ]
     assert nearest["factor"] == 1.3
-    assert ensemble_of([{"factor": 1.0, "worlds": []}], 2)["worlds"] == []
+    assert ensemble_of([{"factor": 1.5, "worlds": []}], 2) == {"factor": 1.5, "worlds": []}
 
 
 @pytest.mark.parametrize(
