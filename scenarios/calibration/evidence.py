@@ -8,7 +8,7 @@ from typing import Any, Final, NamedTuple
 
 from kswarms.agents.common.atomic_files import atomic_path
 from kswarms.agents.common.errors import InputError
-from kswarms.model.description.parameters import Parameters
+from kswarms.model.description.parameters import PRESETS, Parameters
 from kswarms.scenarios.calibration.worlds import in_world
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.runs.outcome import Outcome
@@ -34,6 +34,8 @@ def runs_of(world: Parameters, curves: Curves, first_seed: int, seeds: int) -> l
     """Return the runs of some curves of the catalogue in a world."""
     scenarios = []
     for (name, condition), densities in curves.items():
+        if name not in CATALOGUE:
+            raise InputError("scenario", name, "must be one of `kswarms list`")
         scenario = CATALOGUE[name]
         chosen = tuple(each for each in scenario.conditions if each.name == condition)
         if not chosen:
@@ -42,6 +44,11 @@ def runs_of(world: Parameters, curves: Curves, first_seed: int, seeds: int) -> l
         games = {"densities": tuple(densities), "seeds": seeds, "grid": {}}
         scenarios.append(in_world(scenario.replace(conditions=chosen, **games), world))
     return expand(scenarios, first_seed)
+
+
+def require_games(curves: Curves) -> None:
+    """Raise an `InputError` if the catalogue does not have some curves at their densities."""
+    runs_of(PRESETS["fitted"], curves, 0, 1)
 
 
 class Evidence:
@@ -65,7 +72,7 @@ class Evidence:
         found, lines = _read(path)
         if found != json.loads(json.dumps(about)):
             raise InputError(
-                "out", str(path.parent), "has another calibration; use another directory, or --fresh"
+                "out", str(path.parent), "has games of other settings; use another directory, or --fresh"
             )
         self._known.update((digest, Rows(swarms, policies)) for digest, swarms, policies in lines)
 

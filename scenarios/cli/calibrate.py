@@ -46,6 +46,7 @@ def calibrate(
     from kswarms.analysis.findings.worlds.targets import read_targets
     from kswarms.scenarios.calibration.calibration import Setup, Stage, calibrate
     from kswarms.scenarios.calibration.directory import open_calibration
+    from kswarms.scenarios.calibration.evidence import require_games
 
     options: dict[str, Any] = {"size": size, "tries": tries, "waves": waves, "factor": factor}
     if free is not None:
@@ -55,6 +56,8 @@ def calibrate(
         Stage(chosen.curves(number), seeds, partial(_judge, chosen.of_stage(number)))
         for number, seeds in enumerate(chosen.seeds, 1)
     ]
+    for stage in stages:
+        require_games(stage.curves)
     about = {"setup": setup.model_dump(mode="json"), "targets": chosen.model_dump(mode="json")}
     directory = open_calibration(out, about, partial(play_runs, jobs), fresh)
     for number, wave in enumerate(calibrate(setup, stages, directory.evidence), 1):

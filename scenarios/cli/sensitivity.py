@@ -9,6 +9,7 @@ import typer
 from kswarms.agents.common.atomic_files import output_path
 from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.calibration.directory import open_calibration
+from kswarms.scenarios.calibration.evidence import require_games
 from kswarms.scenarios.calibration.prior import PRIOR
 from kswarms.scenarios.cli.calibrate import play_runs
 from kswarms.scenarios.cli.options import CPUS, Jobs, complete_scenario_ids, parse_path
@@ -59,6 +60,7 @@ def sensitivity(
             raise InputError("free", name, f"must be among {', '.join(PRIOR)}")
     quantity = Quantity(measure=measure, scenario=scenario, condition=condition, swarm=swarm)
     curves = {(scenario, condition): parse_integers("densities", densities)}
+    require_games(curves)
     about = {"quantity": quantity.model_dump(mode="json"), "densities": densities, "free": list(names)}
     directory = open_calibration(
         out, {**about, "trajectories": trajectories, "seeds": seeds}, partial(play_runs, jobs), fresh
@@ -69,7 +71,7 @@ def sensitivity(
     with output_path(out / TABLE, "out") as path:
         path.write_text("".join(",".join(row) + "\n" for row in [header, *rows]), encoding="utf-8")
     shown = [[row.parameter, *(f"{value:.3g}" for value in row[1:])] for row in found]
-    caption = f"{quantity.unit}, for the range of a parameter; {trajectories} trajectories, {seeds} seeds"
+    caption = f"{quantity.unit}, for the range of a parameter; {trajectories} trajectories, seeds: {seeds}"
     print_table(f"sensitivity of {quantity}", ["parameter", "μ*", "± (95 %)", "σ", "μ"], shown, caption)
     print_line(f"table: {out / TABLE}")
 
@@ -79,4 +81,7 @@ def _mean(quantity: Any, rows: Any) -> float:
     from kswarms.analysis.findings.data import sample
     from kswarms.analysis.results.runs import Results
 
-    return float(sample(Results.of_rows(rows.swarms, rows.policies), quantity).to_numpy().mean())
+    table = sample(Results.of_rows(rows.swarms, rows.policies), quantity)
+    if table.empty:
+        raise InputError("measure", quantity.measure, f"must be a measure of the games: none of {quantity}")
+    return float(table.to_numpy().mean())

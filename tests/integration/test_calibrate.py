@@ -94,6 +94,22 @@ def test_a_killed_and_resumed_calibration_has_the_trace_of_an_undisturbed_one() 
 
 
 @pytest.mark.parametrize(
+    ("old", "new", "error"),
+    [
+        ("fig-6.8", "fig-9", "scenario='fig-9': must be one of `kswarms list`"),
+        ("densities = [6]", "densities = [7]", "n=7: must be a multiple of 2"),
+    ],
+)
+def test_targets_without_games_are_refused_and_nothing_is_written(
+    old: str, new: str, error: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("tiny.toml").write_text(TARGETS.replace(old, new))
+    assert invoke(TINY) == 2
+    assert capsys.readouterr().err.startswith(f"kswarms: {error}")
+    assert [path.name for path in Path().iterdir()] == ["tiny.toml"]
+
+
+@pytest.mark.parametrize(
     ("words", "error"),
     [
         (["--targets", "absent.toml"], "targets='absent.toml': must be a readable file"),

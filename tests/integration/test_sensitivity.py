@@ -22,7 +22,7 @@ def test_the_indices_are_printed_and_written(
     pytest.importorskip("SALib", reason="needs the extra `sensitivity`")
     assert invoke(COMMAND) == 0
     printed = capsys.readouterr().out
-    assert "2 trajectories, 1 seeds" in printed
+    assert "2 trajectories, seeds: 1" in printed
     table = pd.read_csv("sensitivity/sensitivity.csv")
     assert set(table["parameter"]) == {"friction", "station_radius"}
     assert (table["mu_star"].diff().dropna() <= 0).all()
@@ -38,6 +38,8 @@ def test_the_indices_are_printed_and_written(
         (["--measure", "mass"], "measure='mass': must be one of pucks"),
         (["--condition", "x"], "condition='x': must be one of '' of fig-6.1a"),
         (["--densities", "7"], "n=7: must be a multiple of 2"),
+        (["--measure", "learned_attack", "--swarm", "2"], "measure='learned_attack': must be a measure of"),
+        (["--swarm", "3"], "measure='pucks': must be a measure of the games: none of fig-6.1a S3"),
     ],
 )
 def test_invalid_options_are_refused(
@@ -46,6 +48,13 @@ def test_invalid_options_are_refused(
     pytest.importorskip("SALib", reason="needs the extra `sensitivity`")
     assert invoke([*COMMAND, *words]) == 2
     assert capsys.readouterr().err.startswith(f"kswarms: {error}")
+
+
+def test_an_unknown_scenario_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("SALib", reason="needs the extra `sensitivity`")
+    assert invoke(["sensitivity", "fig-9"]) == 2
+    assert capsys.readouterr().err.startswith("kswarms: scenario='fig-9': must be one of `kswarms list`")
+    assert not list(Path().iterdir())
 
 
 def test_without_the_library_one_line_says_what_to_install(

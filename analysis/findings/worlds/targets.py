@@ -9,7 +9,8 @@ from pydantic import Field, model_validator
 from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.input_files import read_toml, to_path
-from kswarms.analysis.findings.claims import Claim
+from kswarms.analysis.findings.claims import Claim, Overtake, Peak, Trend
+from kswarms.analysis.findings.data import NoDataError
 from kswarms.analysis.findings.worlds.discrepancy import discrepancy
 from kswarms.analysis.results.runs import Results
 
@@ -45,13 +46,22 @@ class Target(FrozenModel):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if not self.claim.densities:
-            raise InputError("claim.densities", [], "must be given for a target")
+        needed = 3 if isinstance(self.claim, Peak | Trend) else 2 if isinstance(self.claim, Overtake) else 1
+        if len(self.claim.densities) < needed:
+            rule = f"must be {needed} or more for a target of this kind"
+            raise InputError("claim.densities", list(self.claim.densities), rule)
         return self
 
     def implausibility(self, results: Results) -> float:
-        """Return weight · discrepancy / tolerance; a target is met up to 1."""
-        return self.weight * discrepancy(self.claim, results) / self.tolerance
+        """Return weight · discrepancy / tolerance; a target is met up to 1.
+
+        `InputError` if the results lack what the claim is about, such as learners.
+        """
+        try:
+            return self.weight * discrepancy(self.claim, results) / self.tolerance
+        except NoDataError as missing:
+            rule = f"must be about games that have its quantities: {missing}"
+            raise InputError("targets", self.id, rule) from None
 
 
 class Targets(FrozenModel):
@@ -105,5 +115,8 @@ def read_targets(name: str | Path) -> Targets:
     InputError
         The file cannot be read, is not TOML, or has invalid or other content.
     """
-    path = Path(__file__).with_name(f"{name}.toml") if name in BUILT_IN else to_path("targets", name)
-    return Targets(**read_toml("targets", path))
+    if name in BUILT_IN:
+        return Targets(**read_toml("targets", Path(__file__).with_name(f"{name}.toml")))
+    if not str(name).endswith(".toml"):
+        raise InputError("targets", str(name), f"must be one of {', '.join(BUILT_IN)}, or a file as my.toml")
+    return Targets(**read_toml("targets", to_path("targets", name)))

@@ -115,9 +115,24 @@ def test_invalid_targets_are_refused(changes: dict[str, object], error: str) -> 
         Targets(**values)
 
 
-def test_a_target_names_its_densities() -> None:
-    with pytest.raises(InputError, match=r"^claim\.densities=\[\]: must be given for a target"):
-        Target(id="a", claim=LINE, tolerance=1)
+@pytest.mark.parametrize(
+    ("claim", "needed"),
+    [
+        (LINE, 1),
+        (Overtake(ahead=S2, behind=S1, between=(30, 40), densities=(30,)), 2),
+        (Peak(quantity=S2, densities=(6, 50)), 3),
+        (Trend(quantity=S2, densities=(6, 50)), 3),
+    ],
+)
+def test_a_target_names_enough_densities(claim: Claim, needed: int) -> None:
+    with pytest.raises(InputError, match=rf"^claim\.densities=.*: must be {needed} or more for a target"):
+        Target(id="a", claim=claim, tolerance=1)
+
+
+def test_a_target_without_its_games_is_refused() -> None:
+    target = Target(id="a", claim=LINE.replace(left=S2.replace(swarm=3), densities=(6,)), tolerance=1)
+    with pytest.raises(InputError, match=r"^targets='a': must be about games that have its quant"):
+        target.implausibility(duel([0.0] * 5, [0.0] * 5))
 
 
 def test_targets_are_read_from_a_file(tmp_path: Path) -> None:
@@ -135,3 +150,5 @@ claim = { kind = "rise then fall", quantity = { scenario = "fig-6.1a" }, densiti
     )
     with pytest.raises(InputError, match=r"targets='?.*absent"):
         read_targets(tmp_path / "absent.toml")
+    with pytest.raises(InputError, match=r"^targets='chapter-7': must be one of chapter-6, or a file as my"):
+        read_targets("chapter-7")

@@ -102,7 +102,7 @@ def test_interruptions_and_the_order_of_games_do_not_change_the_trace(tmp_path: 
 def test_another_calibration_and_other_files_are_refused(tmp_path: Path) -> None:
     run(tmp_path / "fit", Player())
     before = {path.name: path.read_bytes() for path in (tmp_path / "fit").iterdir()}
-    with pytest.raises(InputError, match="has another calibration"):
+    with pytest.raises(InputError, match="has games of other settings"):
         run(tmp_path / "fit", Player(), setup=SETUP.replace(size=9))
     assert {path.name: path.read_bytes() for path in (tmp_path / "fit").iterdir()} == before
     assert json.loads(before["calibration.json"])["setup"]["size"] == 8

@@ -67,6 +67,11 @@ def test_an_unknown_curve_is_refused() -> None:
         runs_of(WORLD, {("fig-6.12", "x"): (6,)}, 0, 1)
 
 
+def test_an_unknown_scenario_is_refused() -> None:
+    with pytest.raises(InputError, match=r"^scenario='fig-9': must be one of `kswarms list`$"):
+        runs_of(WORLD, {("fig-9", ""): (6,)}, 0, 1)
+
+
 def test_rows_have_the_labels_of_their_curves(path: Path) -> None:
     (rows,) = Evidence(path, {}, Player()).rows([runs_of(WORLD, CURVES, 7, 2)])
     assert len(rows.swarms) == 12
@@ -101,7 +106,7 @@ def test_a_file_of_others_is_refused_and_unchanged(path: Path, content: str) -> 
 
 def test_a_file_of_another_calibration_is_refused(path: Path) -> None:
     Evidence(path, {"size": 3}, Player())
-    with pytest.raises(InputError, match="has another calibration; use another directory, or --fresh"):
+    with pytest.raises(InputError, match="has games of other settings; use another directory, or --fresh"):
         Evidence(path, {"size": 4}, Player())
     assert json.loads(path.read_text()) == {"calibration": {"size": 3}}
 
