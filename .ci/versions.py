@@ -71,7 +71,10 @@ class Budget:
 
 
 def run(command: list[str | Path], limit: float | None) -> str:
-    """Run a command, and stop it and its children after some time (s); return what came of it."""
+    """Run a command with a time limit (s) and return `PASSED`, `FAILED` or `UNFINISHED`.
+
+    At the limit, the command and all processes that it started are killed.
+    """
     with subprocess.Popen(command, cwd=ROOT, start_new_session=True) as process:
         try:
             return PASSED if process.wait(limit) == 0 else FAILED

@@ -18,7 +18,7 @@ from kswarms.agents.learning.bandit import Bandit
 from kswarms.agents.user_code.syntax import build
 
 GAMMA: Final = 0.1211
-"""γ of UCB (Eq. 4.16) in a game without its own value."""
+"""Default of γ, the weight of exploration in UCB."""
 FORGOTTEN: Final = 1e-12  # an arm with a smaller discounted count is treated as untried
 
 
@@ -30,8 +30,8 @@ class Rule(FrozenModel, ABC):
         """Factor by which each new conflict of a bandit discounts its earlier ones; 1 for no discounting."""
         return 1.0
 
-    def in_game(self, gamma: float) -> "Rule":  # for rules with a γ
-        """Return the rule with γ of the game's parameters, unless it has none or its own."""
+    def in_game(self, gamma: float) -> "Rule":
+        """Return the rule for a game with this γ; rules without a γ, or with their own, are unchanged."""
         return self
 
     def choose(self, bandit: Bandit, rng: Generator) -> int:
@@ -61,11 +61,11 @@ class Rule(FrozenModel, ABC):
 class UCB(Rule):
     """Upper confidence bound: argmax Q(a) + sqrt(γ ln N / N(a)) (Eq. 4.16)."""
 
-    gamma: float | None = Field(None, ge=0)  # γ, the weight of exploration; None for that of the game
+    gamma: float | None = Field(None, ge=0)  # γ, the weight of exploration; None: that of the game
 
     @property
     def weight(self) -> float:
-        """γ."""
+        """γ, the weight of exploration."""
         return GAMMA if self.gamma is None else self.gamma
 
     def in_game(self, gamma: float) -> Rule:

@@ -117,7 +117,7 @@ def turn_from_walls(
 
 
 NO_HEADINGS: Final = np.empty(0)
-"""Random headings before the first are drawn."""
+"""Argument of `turn_from_walls` before random headings have been drawn."""
 
 
 @compiled_inner

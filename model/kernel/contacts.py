@@ -10,11 +10,10 @@ of their gap g:
 
     c = p/2 (w_i + w_j)·n, but at least u_j·n + g/2 and at most u_i·n − g/2.
 
-A robot that may move as its drive commands has no contact: the other blocks nothing.
-
 Here u is the displacement that a robot's drive commands, w the robot's displacement in the last period
 (without relaxation), and p the push share. Two opposed drives of equal force cancel, so the common momentum
-remains. With p = 0 a robot never pushes one that stands.
+remains. With p = 0 a robot never pushes one that stands. A robot for which this allows u·n is not blocked and
+has no contact.
 """
 
 import math

@@ -10,6 +10,8 @@ from kswarms.agents.common.input_files import read_json
 from kswarms.model.description.parameters import Parameters, parse_parameters
 from kswarms.scenarios.calibration.calibration import ensemble_of
 from kswarms.scenarios.calibration.evidence import Evidence, Play, require_evidence
+from kswarms.scenarios.runs.outcome import environment
+from kswarms.scenarios.runs.run import code_version
 from kswarms.scenarios.study.directory import GAMES_FILE, make_directory, write_json
 
 TRACE: Final = "calibration.json"
@@ -54,7 +56,7 @@ def read_ensemble(out: Path) -> list[Parameters]:
 
 
 def open_calibration(out: Path, about: Mapping[str, Any], play: Play, fresh: bool = False) -> Directory:
-    """Create the directory, or open that of a calibration with the same settings and targets.
+    """Create the directory, or open that of a calibration with the same settings, code and versions.
 
     Parameters
     ----------
@@ -68,7 +70,7 @@ def open_calibration(out: Path, about: Mapping[str, Any], play: Play, fresh: boo
     Raises
     ------
     InputError
-        The directory has another calibration, or other files.
+        The directory has other files, or games of other settings, code or versions.
     """
     make_directory(out, GAMES_FILE, [TRACE])
     games = out / GAMES_FILE
@@ -76,6 +78,7 @@ def open_calibration(out: Path, about: Mapping[str, Any], play: Play, fresh: boo
         require_evidence(games)
         for path in (games, out / TRACE):
             path.unlink(missing_ok=True)
+    about = {**about, "code": code_version(), "environment": environment()}  # results depend on them
     evidence = Evidence(games, about, play)
     remove_temporary_files(out)
     return Directory(out, about, evidence)

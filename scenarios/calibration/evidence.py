@@ -24,7 +24,7 @@ _ABOUT: Final = "calibration"
 
 
 class Rows(NamedTuple):
-    """Rows of ``runs.parquet`` and of ``policies.parquet``, as far as results are judged by them."""
+    """Rows of ``runs.parquet`` and of ``policies.parquet``."""
 
     swarms: list[dict[str, Any]]
     policies: list[dict[str, Any]]
@@ -52,14 +52,15 @@ def require_games(curves: Curves) -> None:
 
 
 class Evidence:
-    """The outcomes of the games so far, one line of JSON for each; the first line says of what calibration.
+    """The outcomes of the games so far, in a file with one line of JSON for each.
 
-    A last line that an interruption cut off is ignored. `play` plays the missing runs.
+    The first line has `about`, the settings that all games have in common. A last line that an interruption
+    cut off is ignored. `play` plays the missing runs.
 
     Raises
     ------
     InputError
-        The file is not of a calibration, or is of another one than `about`.
+        The file has other content, or games of other settings.
     """
 
     def __init__(self, path: Path, about: Mapping[str, Any], play: Play) -> None:
@@ -86,20 +87,9 @@ class Evidence:
     def _add(self, runs: Sequence[Run]) -> None:
         with closing(self._play(runs)) as played, self._path.open("a", encoding="utf-8") as file:
             for run, outcome in played:
-                rows = Rows(*([_short(row) for row in of] for of in (outcome.swarms, outcome.policies)))
-                self._known[run.digest] = rows
+                rows = self._known[run.digest] = Rows(outcome.swarms, outcome.policies)
                 file.write(json.dumps([run.digest, *rows], separators=(",", ":")) + "\n")
                 file.flush()
-
-
-_COLUMNS: Final = frozenset(
-    {"swarm", "size", "pucks", "sud", "t_a_intra", "t_a_inter", "t_p", "conflicts_intra", "conflicts_inter"}
-    | {"duration", "opponent", "attack_share"}
-)
-
-
-def _short(row: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in row.items() if name in _COLUMNS}
 
 
 def _labelled(plan: Iterable[Run], known: Mapping[str, Rows]) -> Rows:
@@ -113,12 +103,12 @@ def _labelled(plan: Iterable[Run], known: Mapping[str, Rows]) -> Rows:
 
 
 def require_evidence(path: Path) -> None:
-    """Raise an `InputError` if a file is not of a calibration."""
+    """Raise an `InputError` if a file has other content than games and their settings."""
     _read(path)
 
 
 def _read(path: Path) -> tuple[object, list[Any]]:
-    """Return what the first line says, and the other lines; a last line that is cut off is deleted."""
+    """Return the settings in the first line, and the other lines. A last line that is cut off is deleted."""
     try:
         *complete, tail = path.read_text(encoding="utf-8").split("\n")
         first, *lines = [json.loads(line) for line in complete]

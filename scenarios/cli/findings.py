@@ -24,6 +24,7 @@ TABLE = "findings.csv"
 
 
 def findings(
+    context: typer.Context,
     worlds: Annotated[
         int, typer.Option(min=0, help="Worlds of the ensemble, besides the default world.")
     ] = 0,
@@ -67,7 +68,7 @@ def findings(
     scenarios, _ = with_densities_and_seeds(
         select_scenarios(ids), parse_integers("densities", densities), seeds, suitable_only=True
     )
-    command = shlex.join(["kswarms", "findings"])
+    command = shlex.join(context.obj)
     results = []
     for name, world in {"default": PRESETS["fitted"], **_named(members)}.items():
         plan = Plan(

@@ -33,8 +33,6 @@ class Target(FrozenModel):
         Factor of the implausibility.
     stage : int
         From 1. A world is checked stage by stage and rejected at the first that it misses.
-    fitted : bool
-        If false, the target is only reported.
     """
 
     id: str = Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")
@@ -42,7 +40,6 @@ class Target(FrozenModel):
     tolerance: float = Field(gt=0)
     weight: float = Field(default=1.0, gt=0)
     stage: int = Field(default=1, ge=1)
-    fitted: bool = True
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -87,18 +84,18 @@ class Targets(FrozenModel):
         for name in ids:
             if ids.count(name) > 1:
                 raise InputError("targets.id", name, "must be given once")
-        stages = {target.stage for target in self.targets if target.fitted}
+        stages = {target.stage for target in self.targets}
         if stages != set(range(1, len(self.seeds) + 1)):
-            rule = f"must be 1 to {len(self.seeds)}, as many as there are seeds, each with a fitted target"
+            rule = f"must be 1 to {len(self.seeds)}, as many as there are seeds, each with a target"
             raise InputError("targets.stage", sorted(stages), rule)
         return self
 
     def of_stage(self, stage: int) -> tuple[Target, ...]:
-        """Return the fitted targets of a stage."""
-        return tuple(target for target in self.targets if target.fitted and target.stage == stage)
+        """Return the targets of a stage."""
+        return tuple(target for target in self.targets if target.stage == stage)
 
     def curves(self, stage: int) -> Mapping[tuple[str, str], tuple[int, ...]]:
-        """Return the densities that the fitted targets of a stage need, by scenario and condition."""
+        """Return the densities that the targets of a stage need, by scenario and condition."""
         needed: dict[tuple[str, str], set[int]] = {}
         for target in self.of_stage(stage):
             for quantity in target.claim.quantities:

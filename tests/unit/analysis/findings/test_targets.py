@@ -90,12 +90,14 @@ def test_the_built_in_targets_are_about_curves_of_the_catalogue() -> None:
             assert scenario != "fig-6.4a"  # Table 6.1, column 1
 
 
-def test_targets_that_are_not_fitted_need_no_games() -> None:
-    fitted = Target(id="a", claim=LINE.replace(densities=(6,)), tolerance=1)
-    reported = fitted.replace(id="b", claim=LINE.replace(densities=(50,)), fitted=False)
-    both = Targets(name="x", seeds=(2,), targets=(fitted, reported))
-    assert both.of_stage(1) == (fitted,)
-    assert both.curves(1) == {("duel", ""): (6,)}
+def test_a_stage_needs_the_densities_of_its_targets() -> None:
+    first = Target(id="a", claim=LINE.replace(densities=(6, 16)), tolerance=1)
+    other = first.replace(id="b", claim=LINE.replace(densities=(16, 30)))
+    last = first.replace(id="c", claim=LINE.replace(densities=(50,)), stage=2)
+    targets = Targets(name="x", seeds=(2, 3), targets=(first, last, other))
+    assert targets.of_stage(1) == (first, other)
+    assert targets.curves(1) == {("duel", ""): (6, 16, 30)}
+    assert targets.curves(2) == {("duel", ""): (50,)}
 
 
 @pytest.mark.parametrize(

@@ -126,6 +126,16 @@ def test_the_ensemble_is_the_last_wave_or_the_nearest_worlds_of_all() -> None:
     assert ensemble_of([{"factor": 1.5, "worlds": []}], 2) == {"factor": 1.5, "worlds": []}
 
 
+@pytest.mark.parametrize("name", ["code_version", "environment"])
+def test_games_of_other_code_or_versions_are_refused(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run(tmp_path / "fit", Player())
+    monkeypatch.setattr(f"kswarms.scenarios.calibration.directory.{name}", lambda: "another")
+    with pytest.raises(InputError, match="has games of other settings"):
+        run(tmp_path / "fit", Player())
+
+
 @pytest.mark.parametrize(
     ("free", "rule"),
     [
