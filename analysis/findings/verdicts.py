@@ -4,7 +4,9 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
-from kswarms.analysis.statistics.intervals import Interval
+import numpy as np
+
+from kswarms.analysis.statistics.intervals import Interval, Values
 
 HOLDS: Final = "holds"
 FAILS: Final = "fails"
@@ -77,9 +79,9 @@ class Region:
         depths += [self.high - interval.high] if math.isfinite(self.high) else []
         return min(depths)
 
-    def distance(self, value: float) -> float:
-        """Return the distance of a value from the region, 0 inside."""
-        return max(0.0, self.low - value, value - self.high)
+    def distance(self, values: Values) -> Values:
+        """Return the distance of each value from the region, 0 inside."""
+        return np.maximum(0.0, np.maximum(self.low - values, values - self.high))
 
     def nearest_bound(self, value: float) -> float:
         """Return the bound nearest to a value."""

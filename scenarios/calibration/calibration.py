@@ -1,4 +1,4 @@
-"""Calibration: an ensemble of worlds whose every target is within its tolerance.
+"""Calibration: an ensemble of worlds that meet all targets.
 
 The result depends only on the settings and the targets, not on interruptions and the number of workers: a
 resumed calibration is computed again from the games that it finds in its file.
@@ -15,7 +15,7 @@ from kswarms.agents.common.errors import InputError
 from kswarms.model.description.parameters import text_of
 from kswarms.scenarios.calibration.evidence import Curves, Evidence, Rows, runs_of
 from kswarms.scenarios.calibration.prior import PRIOR, to_world
-from kswarms.scenarios.calibration.waves import Sampling, sample
+from kswarms.scenarios.calibration.waves import Judge, Sampling, sample
 
 FIRST_SEED: Final = 10_000
 """Seed of the first game. Each wave has other seeds; the catalogue has those from 0."""
@@ -37,62 +37,54 @@ class Setup(Sampling):
 
 
 class Stage(NamedTuple):
-    """The games of a stage, and the function that judges their rows."""
+    """The games of a stage, and the targets that they are judged by."""
 
     curves: Curves
     seeds: int
-    judge: Callable[[Rows], Mapping[str, float]]
-    """Returns the implausibility of each target by its id; a world is judged by the greatest."""
+    outputs: Callable[[Rows], Floats]
+    """Returns the outputs of the games of a world, shape (outputs,)."""
+    targets: tuple[str, ...]
+    judge: Judge
+    """Returns the implausibility of each target; a world is judged by the greatest."""
 
 
 def calibrate(setup: Setup, stages: Sequence[Stage], evidence: Evidence) -> Generator[dict[str, Any]]:
-    """Yield each wave as JSON: its factor, and its accepted worlds with their implausibilities."""
+    """Yield each wave as JSON: its worlds that played all games, with the implausibility of each target."""
     seeds_of_wave = sum(stage.seeds for stage in stages)
-    judged: dict[tuple[bytes, int], dict[str, float]] = {}
+    targets = [name for stage in stages for name in stage.targets]
 
-    def judge(positions: Floats, wave: int, stage: int) -> Floats:
-        games = stages[stage - 1]
-        first_seed = FIRST_SEED + wave * seeds_of_wave + sum(each.seeds for each in stages[: stage - 1])
+    def play(positions: Floats, wave: int, number: int) -> Floats:
+        stage = stages[number - 1]
+        first_seed = FIRST_SEED + wave * seeds_of_wave + sum(each.seeds for each in stages[: number - 1])
         worlds = [to_world(setup.free, position) for position in positions]
-        plans = [runs_of(world, games.curves, first_seed, games.seeds) for world in worlds]
-        worst = []
-        for position, rows in zip(positions, evidence.rows(plans), strict=True):
-            found = judged[position.tobytes(), stage] = dict(games.judge(rows))
-            worst.append(max(found.values()))
-        return np.array(worst)
+        plans = [runs_of(world, stage.curves, first_seed, stage.seeds) for world in worlds]
+        return np.array([stage.outputs(rows) for rows in evidence.rows(plans)])
 
-    def world_of(position: Floats) -> dict[str, Any]:
-        by_target: dict[str, float] = {}
-        for stage in range(1, len(stages) + 1):
-            by_target |= judged[position.tobytes(), stage]
-        world = text_of(to_world(setup.free, position))
-        return {"parameters": world, "implausibility": {name: round(x, 4) for name, x in by_target.items()}}
-
-    for wave in sample(len(setup.free), len(stages), judge, setup):
+    for wave in sample(len(setup.free), play, [stage.judge for stage in stages], setup):
         yield {
-            "factor": wave.factor,
-            "tried": wave.tried,
             "passed": list(wave.passed),
             "worlds": [
-                {**world_of(position), "weight": float(weight)}
-                for position, weight in zip(wave.positions, wave.weights, strict=True)
+                {
+                    "parameters": text_of(to_world(setup.free, position)),
+                    "implausibility": {name: round(x, 4) for name, x in zip(targets, found, strict=True)},
+                }
+                for position, found in zip(wave.positions, wave.implausibility.tolist(), strict=True)
             ],
         }
 
 
 def ensemble_of(waves: Sequence[Mapping[str, Any]], size: int) -> dict[str, Any]:
-    """Return the worlds of the last wave if it accepted enough of them.
+    """Return the worlds of all waves that meet all targets, or the `size` nearest if there are fewer.
 
-    Otherwise, return the `size` worlds of all waves that are nearest to the targets. ``factor`` is the
-    smallest common factor on the tolerances with which they meet all targets.
+    ``factor`` is the smallest common factor on the tolerances with which these worlds meet all targets, at
+    least 1.
     """
-    *_, last = waves
-    if len(last["worlds"]) >= size:
-        return {"factor": last["factor"], "worlds": last["worlds"]}
-    nearest = sorted((world for wave in waves for world in wave["worlds"]), key=_worst)[:size]
-    equal = [{**world, "weight": 1 / len(nearest)} for world in nearest]
-    return {"factor": max(map(_worst, nearest), default=last["factor"]), "worlds": equal}
+    worlds = sorted((world for wave in waves for world in wave["worlds"]), key=worst_of)
+    compatible = [world for world in worlds if worst_of(world) <= 1]
+    chosen = compatible if len(compatible) >= size else worlds[:size]
+    return {"factor": max([1.0, *map(worst_of, chosen)]), "worlds": chosen}
 
 
-def _worst(world: Mapping[str, Any]) -> float:
+def worst_of(world: Mapping[str, Any]) -> float:
+    """Return the greatest implausibility of a world."""
     return float(max(world["implausibility"].values()))

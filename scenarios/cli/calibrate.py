@@ -1,6 +1,6 @@
-"""``calibrate``: find the worlds that are compatible with all targets."""
+"""``calibrate``: find the worlds that meet all targets."""
 
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Sequence
 from contextlib import closing
 from functools import partial
 from pathlib import Path
@@ -25,9 +25,11 @@ def calibrate(
         typer.Option(metavar="NAME,...", help="Free parameters of docs/calibration.md. [default: all]"),
     ] = None,
     size: Annotated[int, typer.Option(help="Worlds of the ensemble, at least 2.")] = 30,
-    tries: Annotated[int, typer.Option(help="Maximum number of worlds that a wave tries.")] = 512,
+    tries: Annotated[int, typer.Option(help="Worlds of a wave.")] = 64,
     waves: Annotated[int, typer.Option(help="Maximum number of waves.")] = 6,
-    factor: Annotated[float, typer.Option(help="Factor on all tolerances in the first wave.")] = 3.0,
+    factor: Annotated[
+        float, typer.Option(help="Factor on all tolerances for a place in the next stage.")
+    ] = 1.5,
     jobs: Jobs = CPUS,
     out: Annotated[
         Path,
@@ -44,7 +46,7 @@ def calibrate(
     Example: kswarms calibrate --free friction,gamma --size 10
     """
     from kswarms.analysis.findings.worlds.targets import read_targets
-    from kswarms.scenarios.calibration.calibration import Setup, Stage, calibrate
+    from kswarms.scenarios.calibration.calibration import Setup, Stage, calibrate, worst_of
     from kswarms.scenarios.calibration.directory import open_calibration
     from kswarms.scenarios.calibration.evidence import require_games
 
@@ -53,7 +55,13 @@ def calibrate(
         options["free"] = split_words(free)
     setup, chosen = Setup(**options), read_targets(targets)
     stages = [
-        Stage(chosen.curves(number), seeds, partial(_judge, chosen.of_stage(number)))
+        Stage(
+            chosen.curves(number),
+            seeds,
+            partial(_outputs, chosen, number),
+            tuple(target.id for target in chosen.of_stage(number)),
+            partial(chosen.implausibility, number),
+        )
         for number, seeds in enumerate(chosen.seeds, 1)
     ]
     for stage in stages:
@@ -62,21 +70,20 @@ def calibrate(
     directory = open_calibration(out, about, partial(play_runs, jobs), fresh)
     for number, wave in enumerate(calibrate(setup, stages, directory.evidence), 1):
         directory.write(wave)
+        met = sum(worst_of(world) <= 1 for world in wave["worlds"])
         print_line(
-            f"wave {number}: {len(wave['worlds'])} of {wave['tried']} worlds"
-            f" within {wave['factor']:.3g} times the tolerances"
+            f"wave {number}: of {wave['passed'][0]} worlds, {len(wave['worlds'])} are near all targets,"
+            f" and {met} meet them"
         )
     found = directory.finish(size)
     print_line(f"ensemble: {len(found['worlds'])} worlds within {found['factor']:.3g} times the tolerances")
     print_line(f"trace: {directory.trace}")
 
 
-def _judge(targets: Sequence[Any], rows: Any) -> Mapping[str, float]:
-    """Return the implausibility of each target."""
+def _outputs(targets: Any, stage: int, rows: Any) -> Any:
     from kswarms.analysis.results.runs import Results
 
-    results = Results.of_rows(rows.swarms, rows.policies)
-    return {target.id: target.implausibility(results) for target in targets}
+    return targets.outputs(stage, Results.of_rows(rows.swarms, rows.policies))
 
 
 def play_runs(jobs: int, runs: Sequence[Run]) -> Generator[tuple[Run, Outcome], None, None]:

@@ -53,7 +53,7 @@ def test_calibrate_prints_its_waves_and_plays_no_game_twice(
     assert invoke(TINY) == 0
     printed = capsys.readouterr()
     first, *_, last = printed.out.splitlines()
-    assert first == "wave 1: 2 of 2 worlds within 3 times the tolerances"
+    assert first == "wave 1: of 2 worlds, 2 are near all targets, and 2 meet them"
     assert "ensemble: 2 worlds within" in printed.out
     assert last == "trace: calibration/calibration.json"
     trace = json.loads(Path("calibration/calibration.json").read_text())

@@ -1,18 +1,21 @@
 """Targets of a calibration as data: claims, each with the tolerance up to which a world may miss it."""
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Final, Self
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.common.input_files import read_toml, to_path
-from kswarms.analysis.findings.claims import Claim, Overtake, Peak, Trend
-from kswarms.analysis.findings.data import NoDataError
-from kswarms.analysis.findings.worlds.discrepancy import discrepancy
+from kswarms.analysis.findings.claims import Agreement, Claim, Overtake, Peak, Trend
+from kswarms.analysis.findings.data import ClaimData, NoDataError, format_densities
+from kswarms.analysis.findings.worlds.discrepancy import discrepancy_of_means, means_of
 from kswarms.analysis.results.runs import Results
+from kswarms.analysis.statistics.intervals import Values
 
 BUILT_IN: Final = ("chapter-6",)
 """Names of the targets that are package data."""
@@ -27,8 +30,9 @@ class Target(FrozenModel):
         Short name.
     claim : Claim
         The claim, with its densities.
-    tolerance : float
-        The discrepancy up to which the claim counts as met, in the unit of the claim.
+    tolerance : float, optional
+        The discrepancy up to which the claim counts as met, in the unit of the claim. It is the margin of
+        the claim for an `Agreement`, and must be given for other claims.
     weight : float
         Factor of the implausibility.
     stage : int
@@ -37,7 +41,7 @@ class Target(FrozenModel):
 
     id: str = Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")
     claim: Annotated[Claim, Field(discriminator="kind")]
-    tolerance: float = Field(gt=0)
+    tolerance: float | None = Field(default=None, gt=0)
     weight: float = Field(default=1.0, gt=0)
     stage: int = Field(default=1, ge=1)
 
@@ -47,18 +51,37 @@ class Target(FrozenModel):
         if len(self.claim.densities) < needed:
             rule = f"must be {needed} or more for a target of this kind"
             raise InputError("claim.densities", list(self.claim.densities), rule)
+        with_margin = isinstance(self.claim, Agreement)
+        if with_margin != (self.tolerance is None):
+            omitted = "must be omitted: the margin of the claim is the tolerance"
+            rule = omitted if with_margin else "must be given for a claim of this kind"
+            raise InputError("tolerance", self.tolerance, rule)
         return self
 
-    def implausibility(self, results: Results) -> float:
-        """Return weight · discrepancy / tolerance; a target is met up to 1.
+    @property
+    def _scale(self) -> float:
+        return self.claim.margin if isinstance(self.claim, Agreement) else self.tolerance or math.inf
+
+    def outputs(self, results: Results) -> Values:
+        """Return the means over the seeds that the claim is about, shape (quantities * densities,).
 
         `InputError` if the results lack what the claim is about, such as learners.
         """
         try:
-            return self.weight * discrepancy(self.claim, results) / self.tolerance
+            data = ClaimData(self.claim, results)
+            if data.densities != list(self.claim.densities):
+                raise NoDataError(f"not all of {format_densities(self.claim.densities)}")
+            return means_of(data).ravel()
         except NoDataError as missing:
             rule = f"must be about games that have its quantities: {missing}"
             raise InputError("targets", self.id, rule) from None
+
+    def implausibility(self, outputs: Values) -> Values:
+        """Return weight · discrepancy / tolerance of each row of outputs; a target is met up to 1."""
+        densities = self.claim.densities
+        means = outputs.reshape(len(outputs), -1, len(densities))
+        found: Values = self.weight * discrepancy_of_means(self.claim, densities, means) / self._scale
+        return found
 
 
 class Targets(FrozenModel):
@@ -93,6 +116,22 @@ class Targets(FrozenModel):
     def of_stage(self, stage: int) -> tuple[Target, ...]:
         """Return the targets of a stage."""
         return tuple(target for target in self.targets if target.stage == stage)
+
+    def outputs(self, stage: int, results: Results) -> Values:
+        """Return the outputs of the targets of a stage, one target after the other."""
+        return np.concatenate([target.outputs(results) for target in self.of_stage(stage)])
+
+    def implausibility(self, stage: int, outputs: Values) -> Values:
+        """Return the implausibility of each target of a stage, shape (sets, targets).
+
+        `outputs` has the outputs of a stage in each row.
+        """
+        targets = self.of_stage(stage)
+        ends = np.cumsum([len(target.claim.quantities) * len(target.claim.densities) for target in targets])
+        parts = np.split(outputs, ends[:-1], axis=1)
+        return np.column_stack(
+            [target.implausibility(part) for target, part in zip(targets, parts, strict=True)]
+        )
 
     def curves(self, stage: int) -> Mapping[tuple[str, str], tuple[int, ...]]:
         """Return the densities that the targets of a stage need, by scenario and condition."""

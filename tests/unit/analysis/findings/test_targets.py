@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from kswarms.agents.common.errors import InputError
@@ -74,7 +75,30 @@ def test_missing_games_are_an_error() -> None:
 def test_the_implausibility_is_the_weighted_share_of_the_tolerance() -> None:
     claim = LINE.replace(densities=DENSITIES)
     target = Target(id="lead", claim=claim, tolerance=3, weight=2)
-    assert target.implausibility(duel([0.0] * 5, [2.0, 0.5, 4.0, -0.5, 6.0])) == pytest.approx(1.0)
+    outputs = target.outputs(duel([0.0] * 5, [2.0, 0.5, 4.0, -0.5, 6.0]))
+    assert outputs == pytest.approx(np.array([2.0, 0.5, 4.0, -0.5, 6.0, *[0.0] * 5]))
+    assert target.implausibility(np.array([outputs, outputs * 0])).tolist() == pytest.approx([1.0, 2 / 3])
+
+
+def test_the_tolerance_of_a_table_is_the_margin_of_the_claim() -> None:
+    table = Agreement(cells=(LEARNED,), margin=4, densities=(16, 30))
+    outputs = np.array([[PUBLISHED[16] + 3, PUBLISHED[30] - 3]])
+    assert Target(id="table", claim=table).implausibility(outputs) == pytest.approx(0.75)
+    with pytest.raises(InputError, match=r"^tolerance=4\.0: must be omitted: the margin of the claim is the"):
+        Target(id="other", claim=table, tolerance=4)
+    with pytest.raises(InputError, match=r"^tolerance=None: must be given for a claim of this kind"):
+        Target(id="other", claim=LINE.replace(densities=(6,)))
+
+
+def test_the_outputs_of_a_stage_are_those_of_its_targets() -> None:
+    first = Target(id="a", claim=LINE.replace(densities=(6, 16)), tolerance=1)
+    other = Target(id="b", claim=Peak(quantity=S2, densities=(6, 16, 30)), tolerance=1)
+    targets = Targets(name="x", seeds=(1,), targets=(first, other))
+    results = duel([0.0] * 5, [3.0, 2.5, 5.0, 0.0, 0.0])
+    outputs = targets.outputs(1, results)
+    assert outputs == pytest.approx(np.array([3.0, 2.5, 0.0, 0.0, 3.0, 2.5, 5.0]))
+    sets = np.array([outputs, outputs - [3, 0, 0, 0, 0, 0, 3]])
+    assert targets.implausibility(1, sets) == pytest.approx(np.array([[0.0, 2.5], [1.0, 0.5]]))
 
 
 def test_the_built_in_targets_are_about_curves_of_the_catalogue() -> None:
@@ -134,7 +158,10 @@ def test_a_target_names_enough_densities(claim: Claim, needed: int) -> None:
 def test_a_target_without_its_games_is_refused() -> None:
     target = Target(id="a", claim=LINE.replace(left=S2.replace(swarm=3), densities=(6,)), tolerance=1)
     with pytest.raises(InputError, match=r"^targets='a': must be about games that have its quant"):
-        target.implausibility(duel([0.0] * 5, [0.0] * 5))
+        target.outputs(duel([0.0] * 5, [0.0] * 5))
+    partly = target.replace(claim=LINE.replace(densities=(6, 7)))
+    with pytest.raises(InputError, match=r"quantities: not all of N = 6, 7"):
+        partly.outputs(duel([0.0] * 5, [0.0] * 5))
 
 
 def test_targets_are_read_from_a_file(tmp_path: Path) -> None:

@@ -6,8 +6,10 @@ from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from kswarms.agents.common.arrays import Floats
 from kswarms.agents.common.errors import InputError
 from kswarms.model.description.parameters import parse_parameters
 from kswarms.scenarios.calibration.calibration import Setup, Stage, calibrate, ensemble_of
@@ -16,7 +18,7 @@ from kswarms.scenarios.calibration.evidence import Rows
 from kswarms.scenarios.runs.outcome import Outcome
 from kswarms.scenarios.runs.run import Run
 
-SETUP = Setup(free=("friction", "gamma"), size=8, batch=16, tries=400, factor=3.0)
+SETUP = Setup(free=("friction", "gamma"), size=8, tries=16, waves=8)
 TRUE = {"friction": 0.5, "gamma": 0.02}
 
 
@@ -33,22 +35,21 @@ class Player:
                 raise KeyboardInterrupt
             self.runs.append(run)
             world = run.game.parameters
-            scores = [abs(math.log(getattr(world, name) / value)) for name, value in TRUE.items()]
+            scores = [math.log(getattr(world, name) / value) for name, value in TRUE.items()]
             yield run, Outcome([{"swarm": k, "pucks": score} for k, score in enumerate(scores)], [], {})
 
 
-def judge_of(swarm: int) -> Any:
-    def judge(rows: Rows) -> dict[str, float]:
+def stage(scenario: str, swarm: int, seeds: int) -> Stage:
+    def outputs(rows: Rows) -> Floats:
         scores = [row["pucks"] for row in rows.swarms if row["swarm"] == swarm]
-        return {f"target-{swarm}": sum(scores) / len(scores) / 0.3}
+        return np.array([sum(scores) / len(scores)])
 
-    return judge
+    return Stage(
+        {(scenario, ""): (6,)}, seeds, outputs, (f"target-{swarm}",), lambda found: np.abs(found) / 0.3
+    )
 
 
-STAGES = [
-    Stage({("fig-6.1a", ""): (6,)}, 2, judge_of(0)),
-    Stage({("fig-6.1c", ""): (6,)}, 1, judge_of(1)),
-]
+STAGES = [stage("fig-6.1a", 0, 2), stage("fig-6.1c", 1, 1)]
 
 
 def run(out: Path, player: Player, fresh: bool = False, setup: Setup = SETUP) -> list[dict[str, Any]]:
@@ -61,16 +62,14 @@ def run(out: Path, player: Player, fresh: bool = False, setup: Setup = SETUP) ->
 
 
 def test_the_ensemble_surrounds_the_true_world(tmp_path: Path) -> None:
-    *_, last = run(tmp_path / "fit", Player())
-    assert last["factor"] == 1.0
-    assert len(last["worlds"]) >= SETUP.size
-    for world in last["worlds"]:
+    found = ensemble_of(run(tmp_path / "fit", Player()), SETUP.size)
+    assert found["factor"] == 1.0
+    assert len(found["worlds"]) >= SETUP.size
+    for world in found["worlds"]:
         parameters = parse_parameters(world["parameters"])
         off = [abs(math.log(getattr(parameters, name) / value)) / 0.3 for name, value in TRUE.items()]
-        found = [world["implausibility"][f"target-{k}"] for k in (0, 1)]
-        assert found == pytest.approx(off, abs=1e-3)
+        assert list(world["implausibility"].values()) == pytest.approx(off, abs=1e-3)
         assert max(off) <= 1.001
-    assert sum(world["weight"] for world in last["worlds"]) == pytest.approx(1)
 
 
 def test_each_wave_has_its_own_seeds(tmp_path: Path) -> None:
@@ -108,22 +107,15 @@ def test_another_calibration_and_other_files_are_refused(tmp_path: Path) -> None
     assert json.loads(before["calibration.json"])["setup"]["size"] == 8
 
 
-def test_the_ensemble_is_the_last_wave_or_the_nearest_worlds_of_all() -> None:
+def test_the_ensemble_has_the_compatible_worlds_or_the_nearest() -> None:
     def world(name: str, *implausibility: float) -> dict[str, Any]:
-        by_target = dict(zip("ab", implausibility, strict=True))
-        return {"parameters": name, "implausibility": by_target, "weight": 0.1}
+        return {"parameters": name, "implausibility": dict(zip("ab", implausibility, strict=True))}
 
-    first = {"factor": 2.5, "worlds": [world("x", 2.4, 0.1), world("y", 1.1, 1.3), world("z", 0.5, 0.6)]}
-    last = {"factor": 1.0, "worlds": [world("v", 0.9, 0.2)]}
-    assert ensemble_of([first, last], 1) == {"factor": 1.0, "worlds": last["worlds"]}
-    nearest = ensemble_of([first, last], 3)
-    assert [(each["parameters"], each["weight"]) for each in nearest["worlds"]] == [
-        ("z", 1 / 3),
-        ("v", 1 / 3),
-        ("y", 1 / 3),
-    ]
-    assert nearest["factor"] == 1.3
-    assert ensemble_of([{"factor": 1.5, "worlds": []}], 2) == {"factor": 1.5, "worlds": []}
+    x, y, z, v = world("x", 2.4, 0.1), world("y", 1.1, 1.3), world("z", 0.5, 0.6), world("v", 0.9, 0.2)
+    waves = [{"worlds": [x, y, z]}, {"worlds": [v]}]
+    assert ensemble_of(waves, 1) == ensemble_of(waves, 2) == {"factor": 1.0, "worlds": [z, v]}
+    assert ensemble_of(waves, 3) == {"factor": 1.3, "worlds": [z, v, y]}
+    assert ensemble_of([{"worlds": []}], 2) == {"factor": 1.0, "worlds": []}
 
 
 @pytest.mark.parametrize("name", ["code_version", "environment"])
