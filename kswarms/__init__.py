@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from kswarms.analysis.results.records import read_conflicts
     from kswarms.analysis.results.runs import Results, read_results
     from kswarms.model.description.game import Game, Swarm
-    from kswarms.model.description.parameters import PRESETS, Parameters
+    from kswarms.model.description.parameters import Parameters
+    from kswarms.model.description.presets import PRESETS, ensemble
     from kswarms.model.foraging import ForagingModel
     from kswarms.model.game_model import GameModel
     from kswarms.scenarios.catalogue import CATALOGUE
@@ -52,7 +53,8 @@ _MODULES: Final = {
     "analysis.results.records": ("read_conflicts",),
     "analysis.results.runs": ("Results", "read_results"),
     "model.description.game": ("Game", "Swarm"),
-    "model.description.parameters": ("PRESETS", "Parameters"),
+    "model.description.parameters": ("Parameters",),
+    "model.description.presets": ("PRESETS", "ensemble"),
     "model.foraging": ("ForagingModel",),
     "model.game_model": ("GameModel",),
     "scenarios.catalogue": ("CATALOGUE",),
@@ -91,6 +93,7 @@ __all__ = [
     "Study",
     "Swarm",
     "SwarmRule",
+    "ensemble",
     "figure_of",
     "judge",
     "judge_all",

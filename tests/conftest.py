@@ -9,7 +9,7 @@ import pytest
 from hypothesis import settings
 
 from kswarms.model.description.game import Game, Swarm
-from kswarms.model.description.parameters import PRESETS
+from kswarms.model.description.presets import PRESETS
 from kswarms.model.game_model import GameModel
 
 # The first example of a test may compile the kernel, which takes longer than any useful deadline.

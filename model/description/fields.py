@@ -20,7 +20,8 @@ from kswarms.agents.common.limits import (
     SLOWEST,
 )
 from kswarms.agents.policies.spec import PolicySpec, parse_policies
-from kswarms.model.description.parameters import PRESETS, Parameters, parse_parameters
+from kswarms.model.description.parameters import Parameters
+from kswarms.model.description.presets import PRESETS, parse_parameters
 
 Layout = Literal["symmetric", "nearer-station", "random-stations"]
 LAYOUTS: Final[tuple[Layout, ...]] = get_args(Layout)

@@ -1,13 +1,12 @@
-"""Parameters of the world (specification, section 2.7) and their named presets. SI units."""
+"""Parameters of the world (specification, section 2.7). SI units."""
 
 import math
-from typing import Final, Literal
+from typing import Literal
 
 from pydantic import Field
 
 from kswarms.agents.actions import AWAY, TOWARDS, Action
-from kswarms.agents.common.descriptions import FrozenModel, parse_number
-from kswarms.agents.common.errors import InputError
+from kswarms.agents.common.descriptions import FrozenModel
 from kswarms.agents.common.limits import (
     FASTEST,
     LONGEST_DISTANCE,
@@ -101,52 +100,3 @@ class Parameters(FrozenModel):
             Action(name="flight", direction=AWAY, duration=self.flight_duration),
             Action(name="fight", direction=TOWARDS, duration=self.fight_duration),
         )
-
-
-PRESETS: Final = {
-    "fitted": Parameters(),
-    # The controller of the ARGoS measurements and the friction of its engine; the push share is fitted.
-    "argos": Parameters(
-        conflict_distance=0.10,
-        front_half_angle=math.radians(67.5),
-        flight_duration=1.0,
-        fight_duration=1.0,
-        turning_rate=3.927,
-        flight_range=0.667,
-        active_range=0.30,
-        leg_mean=3.0,
-        wander_turn=math.radians(120),
-        wall_distance=0.10,
-        wall_half_angle=math.pi / 4,
-        wall_escape="away",
-        station_radius=0.12,
-        base_radius=0.12,
-        base_range=0.667,
-        friction=0.7,
-        push_share=1.0,
-    ),
-}
-
-
-def parse_parameters(text: str) -> Parameters:
-    """Parse the name of a preset, followed by changes of single parameters: ``"fitted, friction=0.3"``."""
-    preset, *changes = (part.strip() for part in text.split(","))
-    if preset not in PRESETS:
-        raise InputError("parameters", preset, f"must begin with one of {', '.join(PRESETS)}")
-    values: dict[str, str] = {}
-    for change in changes:
-        name, sign, value = (part.strip() for part in change.partition("="))
-        if not sign:
-            raise InputError("parameters", name, "after the preset, must be name=value")
-        if values.setdefault(name, value) != value:
-            raise InputError(f"parameters.{name}", value, "must be given once")
-    return PRESETS[preset].replace(**{name: parse_number(value) for name, value in values.items()})
-
-
-def text_of(parameters: Parameters) -> str:
-    """Return the shortest text that `parse_parameters` parses to these parameters."""
-    texts = []
-    for preset, defaults in PRESETS.items():
-        changes = [f"{name}={value}" for name, value in parameters if value != getattr(defaults, name)]
-        texts.append(", ".join([preset, *changes]))
-    return min(texts, key=len)

@@ -12,9 +12,8 @@ from pydantic import model_validator
 
 from kswarms.agents.common.arrays import Floats
 from kswarms.agents.common.errors import InputError
-from kswarms.model.description.parameters import text_of
 from kswarms.scenarios.calibration.evidence import Curves, Evidence, Rows, runs_of
-from kswarms.scenarios.calibration.prior import PRIOR, to_world
+from kswarms.scenarios.calibration.prior import PRIOR, to_world, values_at
 from kswarms.scenarios.calibration.waves import Judge, Sampling, sample
 
 FIRST_SEED: Final = 10_000
@@ -65,7 +64,7 @@ def calibrate(setup: Setup, stages: Sequence[Stage], evidence: Evidence) -> Gene
             "passed": list(wave.passed),
             "worlds": [
                 {
-                    "parameters": text_of(to_world(setup.free, position)),
+                    "parameters": values_at(setup.free, position),
                     "implausibility": {name: round(x, 4) for name, x in zip(targets, found, strict=True)},
                 }
                 for position, found in zip(wave.positions, wave.implausibility.tolist(), strict=True)

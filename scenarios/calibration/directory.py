@@ -6,8 +6,8 @@ from typing import Any, Final
 
 from kswarms.agents.common.atomic_files import remove_temporary_files
 from kswarms.agents.common.errors import InputError
-from kswarms.agents.common.input_files import read_json
-from kswarms.model.description.parameters import Parameters, parse_parameters
+from kswarms.model.description.parameters import Parameters
+from kswarms.model.description.presets import read_worlds, write_worlds
 from kswarms.scenarios.calibration.calibration import ensemble_of
 from kswarms.scenarios.calibration.evidence import Evidence, Play, require_evidence
 from kswarms.scenarios.runs.outcome import environment
@@ -16,13 +16,15 @@ from kswarms.scenarios.study.directory import GAMES_FILE, make_directory, write_
 
 TRACE: Final = "calibration.json"
 """File of the settings, the targets and the waves."""
+WORLDS: Final = "ensemble.csv"
+"""File of the ensemble: one world for each row, those nearest to all targets first."""
 
 
 class Directory:
     """An open directory of a calibration, with the games in `evidence`."""
 
     def __init__(self, out: Path, about: Mapping[str, Any], evidence: Evidence) -> None:
-        self.trace, self.evidence = out / TRACE, evidence
+        self.trace, self.worlds, self.evidence = out / TRACE, out / WORLDS, evidence
         self._content: dict[str, Any] = {**about, "waves": []}
 
     def write(self, wave: Mapping[str, Any]) -> None:
@@ -31,13 +33,21 @@ class Directory:
         write_json(self.trace, self._content)
 
     def finish(self, size: int) -> dict[str, Any]:
-        """Write the trace with the ensemble of `size` worlds, and return the ensemble."""
-        self._content["ensemble"] = ensemble_of(self._content["waves"], size)
+        """Write the trace with the ensemble of `size` worlds, and its free parameters as a table.
+
+        Returns
+        -------
+        dict
+            The ensemble (`ensemble_of`).
+        """
+        found = self._content["ensemble"] = ensemble_of(self._content["waves"], size)
         write_json(self.trace, self._content)
-        return dict(self._content["ensemble"])
+        if found["worlds"]:
+            write_worlds(self.worlds, [world["parameters"] for world in found["worlds"]])
+        return found
 
 
-def read_ensemble(out: Path) -> list[Parameters]:
+def read_ensemble(out: Path) -> tuple[Parameters, ...]:
     """Return the worlds that a calibration found.
 
     Raises
@@ -45,14 +55,9 @@ def read_ensemble(out: Path) -> list[Parameters]:
     InputError
         The directory has no finished calibration.
     """
-    try:
-        found = read_json("calibration", out / TRACE)["ensemble"]["worlds"]
-        worlds = [parse_parameters(each["parameters"]) for each in found]
-    except (ValueError, TypeError, KeyError):
-        worlds = []
-    if not worlds:
+    if not (out / WORLDS).is_file():
         raise InputError("calibration", str(out), "must be the directory of a finished `kswarms calibrate`")
-    return worlds
+    return read_worlds(out / WORLDS)
 
 
 def open_calibration(out: Path, about: Mapping[str, Any], play: Play, fresh: bool = False) -> Directory:
@@ -72,11 +77,11 @@ def open_calibration(out: Path, about: Mapping[str, Any], play: Play, fresh: boo
     InputError
         The directory has other files, or games of other settings, code or versions.
     """
-    make_directory(out, GAMES_FILE, [TRACE])
+    make_directory(out, GAMES_FILE, [TRACE, WORLDS])
     games = out / GAMES_FILE
     if fresh and games.exists():
         require_evidence(games)
-        for path in (games, out / TRACE):
+        for path in (games, out / TRACE, out / WORLDS):
             path.unlink(missing_ok=True)
     about = {**about, "code": code_version(), "environment": environment()}  # results depend on them
     evidence = Evidence(games, about, play)

@@ -8,7 +8,8 @@ from typing import Any, Final, NamedTuple
 
 from kswarms.agents.common.atomic_files import atomic_path
 from kswarms.agents.common.errors import InputError
-from kswarms.model.description.parameters import PRESETS, Parameters
+from kswarms.model.description.parameters import Parameters
+from kswarms.model.description.presets import PRESETS
 from kswarms.scenarios.calibration.worlds import in_world
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.runs.outcome import Outcome

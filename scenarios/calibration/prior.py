@@ -5,7 +5,8 @@ from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 from kswarms.agents.common.arrays import Floats
-from kswarms.model.description.parameters import PRESETS, Parameters
+from kswarms.model.description.parameters import Parameters
+from kswarms.model.description.presets import PRESETS
 
 
 class Range(NamedTuple):
@@ -42,11 +43,8 @@ range of the robot's sensors.
 """
 
 
-def to_world(free: Sequence[str], position: Floats, base: Parameters = PRESETS["fitted"]) -> Parameters:
-    """Return the world at a position in the unit cube, shape (len(free),), with four significant digits.
-
-    The other parameters are those of `base`.
-    """
+def values_at(free: Sequence[str], position: Floats) -> dict[str, float]:
+    """Return the parameters at a position in the unit cube, shape (len(free),), with four digits."""
     values = {}
     for name, part in zip(free, position, strict=True):
         low, high, step = PRIOR[name]
@@ -56,4 +54,9 @@ def to_world(free: Sequence[str], position: Floats, base: Parameters = PRESETS["
         else:
             value = low * (high / low) ** float(part)
         values[name] = min(float(f"{value:.4g}"), high)  # rounding may exceed the range
-    return base.replace(**values)
+    return values
+
+
+def to_world(free: Sequence[str], position: Floats) -> Parameters:
+    """Return the world at a position. The other parameters have their defaults."""
+    return PRESETS["fitted"].replace(**values_at(free, position))

@@ -2,7 +2,8 @@
 
 from typing import Final
 
-from kswarms.model.description.parameters import PRESETS, Parameters
+from kswarms.model.description.parameters import Parameters
+from kswarms.model.description.presets import PRESETS
 from kswarms.scenarios.description.scenario import Scenario
 
 CONTACTS: Final = ("friction", "push_share")

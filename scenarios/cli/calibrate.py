@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from kswarms.agents.common.errors import InputError
 from kswarms.scenarios.cli.options import CPUS, Jobs, parse_path
 from kswarms.scenarios.cli.printing import print_line
 from kswarms.scenarios.cli.progress import play_tracked
@@ -76,7 +77,10 @@ def calibrate(
             f" and {met} meet them"
         )
     found = directory.finish(size)
+    if not found["worlds"]:
+        raise InputError("factor", factor, "must be larger: no world is near all targets")
     print_line(f"ensemble: {len(found['worlds'])} worlds within {found['factor']:.3g} times the tolerances")
+    print_line(f"worlds: {directory.worlds}")
     print_line(f"trace: {directory.trace}")
 
 

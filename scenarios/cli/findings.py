@@ -1,6 +1,7 @@
 """``findings``: judge findings in the default world and in the worlds of a calibration."""
 
 import shlex
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -8,7 +9,8 @@ import typer
 
 from kswarms.agents.common.atomic_files import output_path
 from kswarms.agents.common.errors import InputError
-from kswarms.model.description.parameters import PRESETS, Parameters
+from kswarms.model.description.parameters import Parameters
+from kswarms.model.description.presets import PRESETS, ensemble
 from kswarms.scenarios.calibration.directory import read_ensemble
 from kswarms.scenarios.calibration.prior import PRIOR
 from kswarms.scenarios.calibration.worlds import in_world
@@ -29,9 +31,13 @@ def findings(
         int, typer.Option(min=0, help="Worlds of the ensemble, besides the default world.")
     ] = 0,
     calibration: Annotated[
-        Path,
-        typer.Option(parser=parse_path, metavar="DIR", help="Directory of `kswarms calibrate`."),
-    ] = Path("calibration"),
+        Path | None,
+        typer.Option(
+            parser=parse_path,
+            metavar="DIR",
+            help="Directory of `kswarms calibrate`. [default: the published ensemble]",
+        ),
+    ] = None,
     file: Annotated[
         Path | None,
         typer.Option(
@@ -49,7 +55,7 @@ def findings(
     ] = Path("findings"),
     progress: Annotated[ProgressStyle, typer.Option(help="How progress is shown.")] = "bar",
 ) -> int:
-    """Judge findings in several worlds: the default one, and worlds that a calibration found.
+    """Judge findings in several worlds: the default one, and worlds of the ensemble.
 
     DIR gets a study for each world, and findings.csv. The same command resumes an interrupted one.
 
@@ -61,16 +67,16 @@ def findings(
     from kswarms.scenarios.cli.playing import Plan, play_study
 
     chosen = read_findings(file) if file is not None else FINDINGS
-    members = read_ensemble(calibration)[:worlds] if worlds else []
+    members = ensemble() if calibration is None else read_ensemble(calibration)
     if len(members) < worlds:
-        raise InputError("worlds", worlds, f"must be at most {len(members)}, the worlds in {calibration}")
+        raise InputError("worlds", worlds, f"must be at most {len(members)}, the worlds of the ensemble")
     ids = dict.fromkeys(name for finding in chosen for name in finding.scenarios if name in CATALOGUE)
     scenarios, _ = with_densities_and_seeds(
         select_scenarios(ids), parse_integers("densities", densities), seeds, suitable_only=True
     )
     command = shlex.join(context.obj)
     results = []
-    for name, world in {"default": PRESETS["fitted"], **_named(members)}.items():
+    for name, world in {"default": PRESETS["fitted"], **_named(members[:worlds])}.items():
         plan = Plan(
             [in_world(scenario, world) for scenario in scenarios],
             first_seed, (1, 1), [], "longest", jobs, None, None, False,
@@ -89,5 +95,5 @@ def findings(
     return 0
 
 
-def _named(members: list[Parameters]) -> dict[str, Parameters]:
+def _named(members: Sequence[Parameters]) -> dict[str, Parameters]:
     return {f"world-{number:02}": world for number, world in enumerate(members, 1)}

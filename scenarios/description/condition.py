@@ -12,7 +12,7 @@ from kswarms.agents.common.limits import LONGEST_NAME, MAX_ROBOTS, MAX_SWARMS
 from kswarms.agents.policies.spec import parse_policies
 from kswarms.model.description.fields import GameFields, SwarmFields
 from kswarms.model.description.game import Game, Swarm, apportion
-from kswarms.model.description.parameters import text_of
+from kswarms.model.description.presets import text_of
 
 Value = bool | int | float | str
 """Value of a field in a grid."""

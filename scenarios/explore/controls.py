@@ -14,7 +14,7 @@ from kswarms.agents.learning.selection_rules import RULES
 from kswarms.agents.policies.registry import ALIASES, POLICIES
 from kswarms.analysis.colours import swarm_colour
 from kswarms.model.description.fields import LAYOUTS
-from kswarms.model.description.parameters import parse_parameters
+from kswarms.model.description.presets import parse_parameters
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.explore.form import learning_of
 from kswarms.scenarios.explore.session import Act, Session

@@ -12,7 +12,7 @@ from kswarms.agents.learning.selection_rules import RULES
 from kswarms.agents.policies.spec import parse_policies
 from kswarms.agents.user_code.syntax import Call
 from kswarms.model.description.game import Game
-from kswarms.model.description.parameters import parse_parameters, text_of
+from kswarms.model.description.presets import parse_parameters, text_of
 from kswarms.scenarios.description.condition import Condition, SwarmRule
 
 

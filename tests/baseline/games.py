@@ -16,7 +16,7 @@ import numpy as np
 
 from kswarms.agents.actions import Action
 from kswarms.model.description.game import Game, Swarm
-from kswarms.model.description.parameters import parse_parameters
+from kswarms.model.description.presets import parse_parameters
 from kswarms.model.game_model import GameModel
 from kswarms.model.recorder import save_policies
 from kswarms.scenarios.catalogue import CATALOGUE

@@ -13,7 +13,7 @@ from kswarms.agents.body import KREMBOT
 from kswarms.agents.robot.state import RobotStates
 from kswarms.agents.streams import Purpose
 from kswarms.model.description.game import Game
-from kswarms.model.description.parameters import PRESETS
+from kswarms.model.description.presets import PRESETS
 from kswarms.model.game_model import GameModel
 from tests.conftest import Scene
 from tests.games import check_times_and_pucks, conflicts_of, make_game, play, play_learning_phase

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from kswarms.model.description.parameters import parse_parameters
 from kswarms.scenarios.cli import invoke
 
 pytestmark = pytest.mark.usefixtures("empty_directory")
@@ -52,14 +51,18 @@ def test_calibrate_prints_its_waves_and_plays_no_game_twice(
 ) -> None:
     assert invoke(TINY) == 0
     printed = capsys.readouterr()
-    first, *_, last = printed.out.splitlines()
+    first, *_, worlds, last = printed.out.splitlines()
     assert first == "wave 1: of 2 worlds, 2 are near all targets, and 2 meet them"
     assert "ensemble: 2 worlds within" in printed.out
+    assert worlds == "worlds: calibration/ensemble.csv"
     assert last == "trace: calibration/calibration.json"
+    (header, *rows) = Path("calibration/ensemble.csv").read_text().splitlines()
+    assert header == "friction,gamma"
+    assert len(rows) == 2
     trace = json.loads(Path("calibration/calibration.json").read_text())
     assert trace["targets"]["name"] == "tiny"
     for world in trace["waves"][0]["worlds"]:
-        assert parse_parameters(world["parameters"]).gamma > 0
+        assert set(world["parameters"]) == {"friction", "gamma"}
         assert set(world["implausibility"]) == {"attackers-score-less", "few-flee-within"}
     monkeypatch.setattr("kswarms.scenarios.runs.sweep.play_all", None)  # calling it would fail
     assert invoke(TINY) == 0

@@ -15,7 +15,7 @@ from kswarms.agents.robot.driver import END_ACTION, END_LEG, Timer
 from kswarms.agents.robot.krembot import Krembot
 from kswarms.agents.streams import Purpose, stream
 from kswarms.model.description.game import Game, Swarm
-from kswarms.model.description.parameters import PRESETS
+from kswarms.model.description.presets import PRESETS
 from kswarms.model.game_model import GameModel, Instant
 from tests import games
 

@@ -1,6 +1,5 @@
 """`kswarms findings`: verdicts in the default world and in worlds of a calibration."""
 
-import json
 from pathlib import Path
 
 import pandas as pd
@@ -21,7 +20,7 @@ relation = ">"
 right = 0
 densities = [6]
 """
-WORLDS = ["fitted, friction=0.7, push_share=1.0", "fitted, station_radius=0.001, base_radius=0.001"]
+WORLDS = "friction,push_share\n0.7,1.0\n0.5,0.5\n"
 COMMAND = ["findings", "--findings", "mine.toml", "--densities", "6", "--seeds", "2", "--jobs", "1"]
 
 
@@ -29,12 +28,11 @@ COMMAND = ["findings", "--findings", "mine.toml", "--densities", "6", "--seeds",
 def _files(empty_directory: Path) -> None:
     Path("mine.toml").write_text(FINDINGS)
     Path("calibration").mkdir()
-    ensemble = {"factor": 1.0, "worlds": [{"parameters": text} for text in WORLDS]}
-    Path("calibration/calibration.json").write_text(json.dumps({"ensemble": ensemble}))
+    Path("calibration/ensemble.csv").write_text(WORLDS)
 
 
 def test_verdicts_count_the_worlds(capsys: pytest.CaptureFixture[str]) -> None:
-    assert invoke([*COMMAND, "--worlds", "1"]) == 0
+    assert invoke([*COMMAND, "--worlds", "1", "--calibration", "calibration"]) == 0
     assert "1 of 1 worlds" in capsys.readouterr().out
     (row,) = pd.read_csv("findings/findings.csv").to_dict("records")
     assert (row["finding"], row["holds"], row["worlds"], row["depends"]) == ("fast-pucks", 1, 1, False)
@@ -47,7 +45,7 @@ def test_verdicts_count_the_worlds(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("words", "error"),
     [
-        (["--worlds", "3"], "worlds=3: must be at most 2, the worlds in calibration"),
+        (["--worlds", "3", "--calibration", "calibration"], "worlds=3: must be at most 2, the worlds of the"),
         (["--worlds", "1", "--calibration", "none"], "calibration='none': must be the dir"),
         (["--densities", "7"], "densities='7': must suit at least one scenario"),
     ],

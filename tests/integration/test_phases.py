@@ -14,7 +14,7 @@ from kswarms.agents.actions import AWAY, Action
 from kswarms.agents.policies.saved import snapshot_of
 from kswarms.agents.robot.state import ACTION
 from kswarms.model.description.game import Game
-from kswarms.model.description.parameters import PRESETS
+from kswarms.model.description.presets import PRESETS
 from kswarms.model.game_model import GameModel
 from tests.games import check_times_and_pucks, conflicts_of, make_game, play, play_learning_phase
 

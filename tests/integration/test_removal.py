@@ -8,7 +8,7 @@ import pytest
 
 from kswarms import GameModel, InputError
 from kswarms.agents.robot.krembot import Krembot
-from kswarms.model.description.parameters import PRESETS
+from kswarms.model.description.presets import PRESETS
 from tests.conftest import Scene
 from tests.games import (
     check_times_and_pucks,

@@ -12,7 +12,7 @@ from kswarms.agents.actions import Action
 from kswarms.agents.policies.interface import Setting
 from kswarms.agents.robot.krembot import Krembot
 from kswarms.model.clock import BEFORE_TIMEOUTS, Instant
-from kswarms.model.description.parameters import PRESETS
+from kswarms.model.description.presets import PRESETS
 from tests.conftest import Scene
 from tests.games import ALL_TABLES, check_times_and_pucks, game_under_way, make_game
 

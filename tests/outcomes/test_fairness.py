@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from kswarms.agents.robot.krembot import Krembot
 from kswarms.agents.streams import Purpose, Streams, stream
 from kswarms.model.description.game import Game, Swarm
-from kswarms.model.description.parameters import PRESETS
+from kswarms.model.description.presets import PRESETS
 from kswarms.model.game_model import GameModel
 
 Values = NDArray[np.float64]

@@ -14,7 +14,7 @@ from kswarms.agents.policies.spec import make_policy
 from kswarms.agents.robot.state import ACTION
 from kswarms.agents.streams import Streams
 from kswarms.model.description.game import Game, Swarm, apportion
-from kswarms.model.description.parameters import PRESETS
+from kswarms.model.description.presets import PRESETS
 from kswarms.model.game_model import GameModel
 from tests.games import check_times_and_pucks, make_game
 

@@ -13,7 +13,7 @@ from kswarms.agents.common.limits import LONGEST_STEP
 from kswarms.agents.robot.state import ACTION, IDLE, Bodies, RobotStates
 from kswarms.model.description.arena import Arena
 from kswarms.model.description.game import Game, Swarm, apportion
-from kswarms.model.description.parameters import PRESETS
+from kswarms.model.description.presets import PRESETS
 from kswarms.model.kernel.arrays import CONFLICT, HOMING, PICK_UP
 from kswarms.model.kernel.kernel import Kernel
 

@@ -9,7 +9,7 @@ import pytest
 
 from kswarms.agents.common.limits import FASTEST, LONGEST_TIME, SHORTEST_TIME, SLOWEST
 from kswarms.model.description.game import Game, Swarm
-from kswarms.model.description.parameters import PRESETS
+from kswarms.model.description.presets import PRESETS
 from kswarms.model.foraging import ForagingModel
 from kswarms.model.game_model import GameModel
 from kswarms.model.recorder import RECORDS

@@ -16,7 +16,7 @@ from kswarms.agents.learning.selection_rules import GAMMA
 from kswarms.agents.policies.learner import Learner
 from kswarms.agents.policies.registry import POLICIES
 from kswarms.model.description.game import Game, Swarm
-from kswarms.model.description.parameters import PRESETS
+from kswarms.model.description.presets import PRESETS
 from kswarms.model.game_model import GameModel
 
 PERIOD = 0.1

@@ -17,7 +17,7 @@ from kswarms.agents.common.errors import InputError, shorten
 from kswarms.agents.policies.interface import Setting
 from kswarms.model.description.fields import LAYOUTS
 from kswarms.model.description.game import Game, Swarm, apportion
-from kswarms.model.description.parameters import PRESETS
+from kswarms.model.description.presets import PRESETS
 from kswarms.model.game_model import GameModel
 
 AVOID = Swarm(policy="avoid", size=10)

@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 
 from kswarms.agents.common.errors import InputError
-from kswarms.model.description.parameters import PRESETS, Parameters, parse_parameters, text_of
+from kswarms.model.description.parameters import Parameters
+from kswarms.model.description.presets import PRESETS, parse_parameters, text_of
 
 FITTED, ARGOS = PRESETS["fitted"], PRESETS["argos"]
 

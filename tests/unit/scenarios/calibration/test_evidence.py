@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from kswarms.agents.common.errors import InputError
-from kswarms.model.description.parameters import PRESETS
+from kswarms.model.description.presets import PRESETS
 from kswarms.scenarios.calibration.evidence import Evidence, runs_of
 from kswarms.scenarios.calibration.prior import PRIOR, to_world
 from kswarms.scenarios.catalogue import CATALOGUE

@@ -80,7 +80,9 @@ def test_without_a_known_position_near_the_targets_the_nearest_are_played() -> N
     def far(positions: Floats, wave: int, stage: int) -> Floats:
         return positions[:, :1]
 
-    waves = list(sample(1, far, [lambda outputs: 1 + 10 * outputs], Sampling(size=10, tries=4, waves=3, factor=100)))
+    waves = list(
+        sample(1, far, [lambda outputs: 1 + 10 * outputs], Sampling(size=10, tries=4, waves=3, factor=100))
+    )
     assert [wave.passed[0] for wave in waves] == [4, 4, 4]
     assert waves[0].positions.max() > 0.1
     assert waves[2].positions.max() <= waves[0].positions.min()

@@ -12,7 +12,7 @@ from kswarms.agents.policies.interface import Setting
 from kswarms.agents.policies.learner import Learner
 from kswarms.agents.policies.spec import make_policy
 from kswarms.agents.streams import Streams
-from kswarms.model.description.parameters import text_of
+from kswarms.model.description.presets import text_of
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.builders import learner, reward_of, rule_of
 from kswarms.scenarios.description.scenario import Scenario

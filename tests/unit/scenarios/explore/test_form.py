@@ -7,7 +7,7 @@ import pytest
 from kswarms.agents.actions import AWAY, TOWARDS, Action
 from kswarms.agents.body import Body
 from kswarms.agents.common.errors import InputError
-from kswarms.model.description.parameters import PRESETS
+from kswarms.model.description.presets import PRESETS
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.description.scenario import Scenario
 from kswarms.scenarios.explore.form import Form, learning_of, with_parameter
