@@ -126,3 +126,17 @@ def test_invalid_settings_are_refused_and_nothing_is_written(
     assert invoke([*TINY, *words]) == 2
     assert capsys.readouterr().err.startswith(f"kswarms: {error}")
     assert [path.name for path in Path().iterdir()] == ["tiny.toml"]
+
+
+def test_targets_that_no_world_is_near_are_an_error_after_the_trace(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    far = TARGETS.replace("stage = 2\n", "").replace("seeds = [1, 1]", "seeds = [1]")
+    far = far.replace("tolerance = 20", "tolerance = 0.001").replace('relation = "<"', 'relation = ">"')
+    Path("tiny.toml").write_text(far)
+    assert invoke([*TINY, "--waves", "1"]) == 2
+    printed = capsys.readouterr()
+    assert printed.out.splitlines()[0] == "wave 1: of 2 worlds, 0 are near all targets, and 0 meet them"
+    assert printed.err.startswith("kswarms: factor=1.5: must be larger: no world is near all targets")
+    assert json.loads(Path("calibration/calibration.json").read_text())["ensemble"]["worlds"] == []
+    assert not Path("calibration/ensemble.csv").exists()
