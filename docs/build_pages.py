@@ -1,8 +1,8 @@
 """Hook of mkdocs: generate the reference and notebook pages; refuse pages that need the network.
 
-The reference has one page for each package and one for the columns of the tables. Notebooks are kept as text
-(jupytext). Each is executed in its own process, and its page shows the output. If a notebook fails, the build
-fails.
+The reference has one page for each package and one for the columns of the tables. The page "What came out"
+gets its tables and figures from the files in ``docs/study``. Notebooks are kept as text (jupytext). Each is
+executed in its own process, and its page shows the output. If a notebook fails, the build fails.
 """
 
 import base64
@@ -15,10 +15,12 @@ import jupytext
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File, Files
+from mkdocs.structure.pages import Page
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
 
 from kswarms.agents.common.columns import SCHEMA_VERSION, data_dictionary
+from kswarms.analysis.report.published_page import study_page
 
 ROOT: Final = Path(__file__).parent.parent
 PACKAGES: Final = ("agents", "model", "scenarios", "analysis")
@@ -39,6 +41,13 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         for name, content in pictures.items():
             files.append(File.generated(config, f"notebooks/{name}", content=content))
     return files
+
+
+def on_page_markdown(markdown: str, page: Page, **_: Any) -> str:
+    """Add the tables and figures of the published study to its page."""
+    if page.file.src_uri != "what_came_out.md":
+        return markdown
+    return f"{markdown}\n{study_page(ROOT / 'docs' / 'study', 'study')}"
 
 
 def on_post_page(output: str, **_: Any) -> str:

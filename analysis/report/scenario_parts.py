@@ -15,6 +15,7 @@ from kswarms.analysis.measures.quantities import TIME_SHARES, shown_quantities
 from kswarms.analysis.report.page import Part
 from kswarms.analysis.results.runs import Results
 from kswarms.analysis.tables import fidelity, scores
+from kswarms.analysis.tables.findings import verdict_rows
 from kswarms.analysis.tables.learned import learned_table
 from kswarms.analysis.text_tables import MISSING, TextTable
 
@@ -103,7 +104,7 @@ def argos_parts(runs: pd.DataFrame) -> Iterator[tuple[str, Part]]:
 
 def verdicts_part(verdicts: Sequence[Verdict]) -> Part:
     """Return the part of the findings: the verdict of each, and the number of findings per verdict."""
-    frame = pd.DataFrame([vars(verdict) for verdict in verdicts])
+    frame = verdict_rows(verdicts)
     counts = frame["verdict"].value_counts()
     header = ["finding", "verdict", "statement", "effect (interval)", "unit", "seeds", "note"]
     rows = frame.assign(effect=[_effect(verdict) for verdict in verdicts])

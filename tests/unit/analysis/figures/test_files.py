@@ -1,13 +1,15 @@
 """Figures as PNG and SVG files."""
 
 from errno import ENOSPC
+from io import BytesIO
 from pathlib import Path
 
 import pytest
 from matplotlib.figure import Figure
+from PIL import Image
 
 from kswarms.agents.common.errors import InputError
-from kswarms.analysis.figures.files import encode, encode_all, save_figure
+from kswarms.analysis.figures.files import encode, encode_all, encode_small, save_figure
 
 
 def figure(height: int = 3) -> Figure:
@@ -20,6 +22,14 @@ def test_the_same_figure_has_the_same_bytes() -> None:
     for kind in ("svg", "png"):
         assert encode(figure(), kind) == encode(figure(), kind) != encode(figure(2), kind)
     assert b"<svg" in encode(figure(), "svg")
+
+
+def test_a_small_file_has_a_palette_and_fewer_bytes() -> None:
+    small = encode_small(figure())
+    assert small == encode_small(figure())
+    assert len(small) < 0.6 * len(encode(figure(), "png"))
+    with Image.open(BytesIO(small)) as image:
+        assert (image.format, image.mode) == ("PNG", "P")
 
 
 def test_an_unknown_format_is_an_error() -> None:
