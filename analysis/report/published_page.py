@@ -63,10 +63,11 @@ def _played(study: Published) -> str:
     about = study.about
     seconds = about["wall_seconds"]
     seeds = study.scores.groupby("scenario")["seeds"].max().value_counts()
+    counts = ", ".join(f"{number} in {count} scenarios" for number, count in seeds.items())
     rows = [
         ["scenarios", str(study.scores["scenario"].nunique())],
         ["runs", f"{about['runs']:,}"],
-        ["seeds", ", ".join(f"{number} in {count} scenarios" for number, count in seeds.items())],
+        ["seeds", f"{counts}, from {about['first_seed']} on"],
         ["CPU time", f"{about['cpu_seconds'] / 3600:.2f} hours"],
         ["time by the clock", MISSING if seconds is None else f"{seconds / 3600:.2f} hours"],
         ["machine", f"{about['cpus']} CPUs; {'; '.join(about['environments'])}"],
@@ -91,7 +92,10 @@ def _findings(study: Published) -> str:
 
 
 def _errors(study: Published) -> str:
-    rows = [[table, curve, str(cells), f"{error:.1f}"] for table, curve, cells, error in error_rows(study)]
+    rows = [
+        [table.removeprefix("table-"), curve, str(cells), f"{error:.1f}"]
+        for table, curve, cells, error in error_rows(study)
+    ]
     if not rows:
         return "## Published tables\n\nThe study has no games for the tables of the thesis."
     return "\n\n".join(

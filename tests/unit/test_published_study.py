@@ -64,6 +64,7 @@ def test_a_study_is_described_by_its_ledger_and_manifest(
     assert invoke([*PLAIN_RUN, "--out", str(tmp_path / "played")]) == 0
     about = script.describe(tmp_path / "played")
     assert about["runs"] == read_results(tmp_path / "played").runs["run"].nunique() == 40
+    assert about["first_seed"] == 0
     assert about["cpu_seconds"] >= 0
     assert about["wall_seconds"] >= 0
     assert about["commands"][0].endswith("--out played")

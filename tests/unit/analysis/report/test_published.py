@@ -19,6 +19,7 @@ PLAYED = ("fig-6.4a", "fig-6.4b", "fig-6.9", "fig-7.4", "argos-avoid-avoid")
 TITLES = {name: CATALOGUE[name].title for name in CATALOGUE}
 ABOUT: dict[str, Any] = {
     "runs": 1234,
+    "first_seed": 0,
     "cpu_seconds": 5400,
     "wall_seconds": None,
     "started": "2026-01-02T03:04:05+00:00",
@@ -84,6 +85,7 @@ def test_the_page_has_a_section_for_each_figure_and_table(folder: Path) -> None:
     for figure in ("fig-6.4a", "fig-7.4", "table-6.1"):
         assert f"](study/{figure}.png)" in page
     assert "| CPU time | 1.50 hours |" in page
+    assert "| seeds | 6 in 5 scenarios, from 0 on |" in page
     assert "| time by the clock | – |" in page
     assert '??? note "What robots learned in fig-6.9"' in page
     assert '??? note "What robots learned in fig-6.4a"' not in page  # Table 6.1 has these numbers
