@@ -44,7 +44,7 @@ def describe(results: Path) -> dict[str, Any]:
     lengths = [_time(session["ended"]) - _time(session["started"]) for session in sessions] if ended else []
     return {
         "runs": runs,
-        "first_seed": min(session["first_seed"] for session in sessions),
+        "first_seed": min(session.get("first_seed", 0) for session in sessions),
         "cpu_seconds": round(seconds),
         "wall_seconds": round(sum(length.total_seconds() for length in lengths)) if ended else None,
         "started": sessions[0]["started"],
