@@ -47,7 +47,7 @@ class Sampling(FrozenModel):
 
     size: int = Field(30, ge=2, le=10_000)
     tries: int = Field(64, ge=2, le=10_000)
-    waves: int = Field(6, ge=1, le=1000)
+    waves: int = Field(4, ge=1, le=1000)
     factor: float = Field(1.5, ge=1)
 
 

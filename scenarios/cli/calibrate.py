@@ -27,7 +27,7 @@ def calibrate(
     ] = None,
     size: Annotated[int, typer.Option(help="Worlds of the ensemble, at least 2.")] = 30,
     tries: Annotated[int, typer.Option(help="Worlds of a wave.")] = 64,
-    waves: Annotated[int, typer.Option(help="Maximum number of waves.")] = 6,
+    waves: Annotated[int, typer.Option(help="Maximum number of waves.")] = 4,
     factor: Annotated[
         float, typer.Option(help="Factor on all tolerances for a place in the next stage.")
     ] = 1.5,
