@@ -16,7 +16,10 @@ AFTER_TIMEOUTS: Final = 2
 
 
 class Instant(Event):
-    """Reusable event with an explicit priority, `BEFORE_TIMEOUTS` or `AFTER_TIMEOUTS`."""
+    """Reusable event with an explicit priority, `BEFORE_TIMEOUTS` or `AFTER_TIMEOUTS`.
+
+    `time` is the time at which it was scheduled last (periods).
+    """
 
     env: Clock
 
@@ -26,12 +29,18 @@ class Instant(Event):
         self._value = None
         self._priority = priority
         self._callbacks = [callback]  # SimPy drops the list from the event, but does not change it
+        self.time = 0
 
     def schedule_in(self, delay: int) -> None:
         """Schedule the event `delay` periods from now; it must not be scheduled already."""
+        self.schedule_at(int(self.env.now) + delay)
+
+    def schedule_at(self, time: int) -> None:
+        """Schedule the event at a time (periods), not in the past; it must not be scheduled already."""
+        self.time = time
         self.callbacks = self._callbacks
         clock = self.env
-        clock.push((clock.now + delay, self._priority, next(clock.order), self))
+        clock.push(clock.queue, (time, self._priority, next(clock.order), self))
 
 
 @contextmanager

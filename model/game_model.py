@@ -65,11 +65,11 @@ class GameModel(GameState):
         """Number of kernel events that wait for decisions of the robots."""
         self._begin_phase(self.phase)
         if self.phase == "learning":
-            Instant(self.env, BEFORE_TIMEOUTS, self._switch_phase).schedule_in(self.game_begin)
+            Instant(self.env, BEFORE_TIMEOUTS, self._switch_phase).schedule_at(self.game_begin)
         end = self.game_begin + self.controller.periods(game.duration)
-        Instant(self.env, BEFORE_TIMEOUTS, self._time_out).schedule_in(end)
+        Instant(self.env, BEFORE_TIMEOUTS, self._time_out).schedule_at(end)
         self._motion = Instant(self.env, AFTER_TIMEOUTS, self._move)
-        self._motion.schedule_in(0)
+        self._motion.schedule_at(0)
         self._sample_every = self.controller.periods(game.sample_period)
         self.recorder = Recorder(self, recorded)
         self.datacollector = self.recorder.collector
@@ -195,22 +195,29 @@ class GameModel(GameState):
     def _finish(self, reason: str) -> None:
         """End the game and stop the clock."""
         self._end(reason)
+        self.env.release_all()
         raise StopSimulation(None)
 
     def _move(self, _: Event) -> None:
         """Let robots decide, move the bodies up to the next decision or event, and schedule itself there."""
         if self.ended:
             return
-        env = self.env
-        now: int = env.now  # type: ignore[assignment]  # whole periods; `cast` would cost a call
+        motion, env = self._motion, self.env
+        now, queue, later = motion.time, env.queue, env.later
+        following = now + 1
         while True:
             if self._due > 0:
                 self._decide(now, self._due)
-            # The end of the game is always scheduled.
-            tick, self._due = self._kernel.advance(now, env.queue[0][0])  # type: ignore[arg-type]
+            until = queue[0][0]  # the end of the game is always scheduled
+            if following in later and until > following:
+                until = following
+            elif later:
+                until = min(until, min(later))
+            tick, self._due = self._kernel.advance(now, until)  # type: ignore[arg-type]
             if tick > now or self._due == 0:
                 break
-        self._motion.schedule_in(tick - now)
+        motion.schedule_at(tick)
+        env.release(tick)
 
     def _decide(self, now: int, size: int) -> None:
         """Pass the first `size` events of the kernel to their robots; the events are ordered by row.

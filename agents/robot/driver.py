@@ -28,7 +28,7 @@ class Driver(TimedAgent):
     """
 
     __slots__ = (
-        "_action_end", "_flights", "_opponent", "_order", "_push", "_stride", "_stride_action",
+        "_action_end", "_flights", "_later", "_opponent", "_order", "_push", "_stride", "_stride_action",
         "_stride_program", "_timer", "_turn_rate", "_turn_step",
     )
 
@@ -43,6 +43,7 @@ class Driver(TimedAgent):
     ) -> None:
         super().__init__(model, index, policy, swarms)
         self._push = model.env.push
+        self._later = model.env.later
         self._order = model.env.order
         self._opponent = model.states.opponent
         self._stride = model.states.stride
@@ -84,7 +85,8 @@ class Driver(TimedAgent):
         """Call `callbacks` after some periods."""
         timer = self._free_timer()
         timer.callbacks = callbacks
-        self._push((int(self._env.now) + periods, NORMAL, next(self._order), timer))
+        end = int(self._env.now) + periods
+        self._push(self._env.queue_of(end), (end, NORMAL, next(self._order), timer))
 
     def _free_timer(self) -> "Timer":
         """Cancel the current leg, turn or drive, if there is one, and return a timer that can be set."""
@@ -129,7 +131,8 @@ def _drive_after_turn(timer: Timer) -> None:
     robot._stride[index] = robot._stride_action
     robot._turn_rate[index] = 0.0
     timer.callbacks = END_ACTION
-    robot._push((robot._action_end, NORMAL, next(robot._order), timer))
+    end = robot._action_end
+    robot._push(robot._later[end], (end, NORMAL, next(robot._order), timer))
 
 
 def _end_action(timer: Timer) -> None:

@@ -176,11 +176,12 @@ class Krembot(Driver):
         if turn:
             self._stride[index] = 0.0
             timer.callbacks = START_DRIVE
-            self._push((now + turn, NORMAL, next(self._order), timer))
+            end = now + turn
         else:
             self._stride[index] = self._stride_action
             timer.callbacks = END_ACTION
-            self._push((now + drive, NORMAL, next(self._order), timer))
+            end = now + drive
+        self._push(self._later[end], (end, NORMAL, next(self._order), timer))
 
     def restart(self, now: int) -> None:
         """Begin the measured game: reset pucks, times and conflicts to 0 and stop learning."""
