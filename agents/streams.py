@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from kswarms.agents.common.arrays import Floats
 
 _FIRST_BLOCK: Final = 4
-_LARGEST_BLOCK: Final = 16
+_LARGEST_BLOCK: Final = 64
 _POOL: Final = 4
 """Words in the pool of a `SeedSequence`."""
 _INIT_A: Final = 0x43B0D7E5
