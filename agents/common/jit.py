@@ -50,7 +50,7 @@ def compiled_inner(function: _Function) -> _Function:
 
     It has neither the code for calls from Python nor a cache, which halves the time of all compilation.
     """
-    return _dispatcher(function, no_cpython_wrapper=True)
+    return _dispatcher(function, no_cpython_wrapper=True, forceinline=True)
 
 
 def _dispatcher(function: _Function, **options: bool) -> _Function:
