@@ -48,8 +48,8 @@ class Clock(simpy.Environment):
     def release(self, time: int) -> None:
         """Move the queue of `time`, the next waking of the motion process, to SimPy's queue."""
         self._waking = time
-        if time in self.later:
-            entries = self.later.pop(time)
+        entries = self.later.pop(time, None)
+        if entries is not None:
             if self._due is None:
                 self._take(entries)
             else:
