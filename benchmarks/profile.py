@@ -28,6 +28,8 @@ from kswarms.model.kernel import arrays, kernel
 
 PLANS: Final = (Plan("avoid,attack", 50), Plan("attack,inter-learner", 50, learning=3000.0))
 _INT: Final = ir.IntType(64)
+_CLOCK: Final = "kswarms.agents.robot.clock"
+"""Module with the loop of SimPy's environment."""
 _EVERY: Final = 0.001
 """Least interval between two samples (s of CPU time); the operating system may make it longer."""
 
@@ -38,7 +40,8 @@ def phase_of(stack: Sequence[tuple[str, str]]) -> str:
     module = stack[0][0]
     if "play" not in functions:
         return "set-up"
-    if module.startswith("simpy"):
+    stack = [frame for frame in stack if frame[0] != _CLOCK]
+    if module == _CLOCK or module.startswith("simpy"):
         inside = any(name.startswith("kswarms.agents") for name, _ in stack)
         return "SimPy: calls by robots" if inside else "SimPy: loop"
     if any(name.startswith(("kswarms.agents.learning", "kswarms.agents.policies")) for name, _ in stack):

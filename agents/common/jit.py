@@ -48,7 +48,8 @@ def compiled(function: _Function) -> _Function:
 def compiled_inner(function: _Function) -> _Function:
     """Compile a function that only compiled functions call; a call from Python ends the process.
 
-    It has neither the code for calls from Python nor a cache, which halves the time of all compilation.
+    It has neither the code for calls from Python nor a cache, which halves the time of all compilation. It is
+    inlined: a call would copy the pointers and lengths of all arrays.
     """
     return _dispatcher(function, no_cpython_wrapper=True, forceinline=True)
 
