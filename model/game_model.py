@@ -213,7 +213,7 @@ class GameModel(GameState):
                 until = following
             elif later:
                 until = min(until, min(later))
-            tick, self._due = self._kernel.advance(now, until)  # type: ignore[arg-type]
+            tick, self._due = self._kernel.advance(now, until)
             if tick > now or self._due == 0:
                 break
         motion.schedule_at(tick)

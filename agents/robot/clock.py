@@ -10,8 +10,8 @@ import simpy
 from simpy.core import SimTime
 from simpy.events import Event
 
-Entry = tuple[float, int, int, Event]
-"""An entry of a queue: time, priority, order and event."""
+Queue = list[Any]
+"""A heap of entries, each of which consists of a time, a priority, a number and an event."""
 
 
 class Clock(simpy.Environment):
@@ -34,14 +34,14 @@ class Clock(simpy.Environment):
 
     def __init__(self) -> None:
         super().__init__()
-        self.queue: list[Entry] = self._queue
-        self.later: defaultdict[int, list[Entry]] = defaultdict(list)
+        self.queue: Queue = self._queue
+        self.later: defaultdict[int, Queue] = defaultdict(list)
         self._waking = 0  # time of the next waking of the motion process
         self.order: Iterator[int] = self._eid
         self.push = heappush
-        self._due: list[Entry] | None = None  # timers of the next waking while `_steps` is active
+        self._due: Queue | None = None  # timers of the next waking while `_steps` is active
 
-    def queue_of(self, time: int) -> list[Entry]:
+    def queue_of(self, time: int) -> Queue:
         """Return the queue of an instant."""
         return self.later[time] if time > self._waking else self.queue
 
@@ -82,13 +82,13 @@ class Clock(simpy.Environment):
                 if queue[0] > entries[-1]:  # the timers come first: the same as `step` for each
                     self._now = entries[0][0]
                     for _, _, _, timer in entries:
-                        callbacks, timer.callbacks = timer.callbacks, None  # type: ignore[assignment]
+                        callbacks, timer.callbacks = timer.callbacks, None
                         for callback in callbacks:
                             callback(timer)
                 else:
                     self._take(entries)
             step()
 
-    def _take(self, entries: list[Entry]) -> None:
+    def _take(self, entries: Queue) -> None:
         for entry in entries:
             heapq.heappush(self._queue, entry)
