@@ -6,14 +6,27 @@ import pytest
 
 from kswarms.agents.common.errors import InputError
 from kswarms.model.description.parameters import Parameters
-from kswarms.model.description.presets import PRESETS, ensemble, parse_parameters, read_worlds, write_worlds
+from kswarms.model.description.presets import (
+    PRESETS,
+    ensemble,
+    parse_parameters,
+    read_worlds,
+    text_of,
+    write_worlds,
+)
+from kswarms.scenarios.calibration.prior import PRIOR
 
 
-def test_the_ensemble_has_thirty_worlds_and_the_default_is_one_of_them() -> None:
+def test_the_ensemble_has_thirty_different_worlds_of_the_prior() -> None:
     worlds = ensemble()
     assert len(worlds) >= 30
-    assert len(set(worlds)) == len(worlds)
-    assert PRESETS["fitted"] in worlds
+    assert len({text_of(world) for world in worlds}) == len(worlds)
+    for name, value in PRESETS["fitted"]:
+        values = {getattr(world, name) for world in worlds}
+        if name in PRIOR:
+            assert PRIOR[name].low <= min(values) < max(values) <= PRIOR[name].high
+        else:
+            assert values == {value}
 
 
 def test_a_text_names_a_member_of_the_ensemble() -> None:
