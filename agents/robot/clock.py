@@ -1,6 +1,5 @@
 """The clock: SimPy's environment, in control periods."""
 
-import heapq
 from collections import defaultdict
 from collections.abc import Iterator
 from heapq import heappush
@@ -91,4 +90,4 @@ class Clock(simpy.Environment):
 
     def _take(self, entries: Queue) -> None:
         for entry in entries:
-            heapq.heappush(self._queue, entry)
+            heappush(self._queue, entry)
