@@ -62,19 +62,21 @@ def make_robots(model: Host, game: Game, seed: int) -> list[Krembot]:
         for spec in specs:
             if spec.runs_user_code:
                 try_policy(spec, Setting(k, swarms, actions, Streams(0, 0)))
-        factories = {spec: spec.factory(actions) for spec in specs}
+        # Equal robots share their numbers and names: the objects of many robots exceed the processor's cache.
+        strides = step * swarm.drive, step * swarm.drive_action
+        kinds = {spec: (str(spec), spec.factory(actions)) for spec in specs}
         for place, spec in enumerate(deal(swarm.policy, swarm.size)):
             number = len(robots)
             streams = Streams(seed, number, seeds)
+            name, factory = kinds[spec]
             robot = Krembot(
                 model,
                 number,
                 k,
-                factories[spec](Setting(k, swarms, actions, streams, place, gamma)),
-                str(spec),
+                factory(Setting(k, swarms, actions, streams, place, gamma)),
+                name,
                 streams,
-                stride_program=step * swarm.drive,
-                stride_action=step * swarm.drive_action,
+                *strides,
                 swarms=swarms,
                 actions=actions if spec.is_user_defined else None,
             )
