@@ -8,8 +8,6 @@ from kswarms.agents.streams import Purpose
 class FixedPolicy:
     """Take one action (`within`) in the own swarm, and one (`against`) against other swarms."""
 
-    __slots__ = ("against", "swarm", "within")
-
     def __init__(self, setting: Setting, within: Action, against: Action) -> None:
         self.swarm = setting.swarm
         self.within = within
@@ -27,8 +25,6 @@ class FixedPolicy:
 class Avoid(FixedPolicy):
     """Flight from every robot."""
 
-    __slots__ = ()
-
     def __init__(self, setting: Setting) -> None:
         super().__init__(setting, within=setting.first(AWAY), against=setting.first(AWAY))
 
@@ -36,16 +32,12 @@ class Avoid(FixedPolicy):
 class Attack(FixedPolicy):
     """Flight within the own swarm, fight against others."""
 
-    __slots__ = ()
-
     def __init__(self, setting: Setting) -> None:
         super().__init__(setting, within=setting.first(AWAY), against=setting.first(TOWARDS))
 
 
 class Aggressive(FixedPolicy):
     """Fight against every robot."""
-
-    __slots__ = ()
 
     def __init__(self, setting: Setting) -> None:
         super().__init__(setting, within=setting.first(TOWARDS), against=setting.first(TOWARDS))

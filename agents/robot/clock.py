@@ -1,5 +1,6 @@
 """The clock: SimPy's environment, in control periods."""
 
+import heapq
 from collections import defaultdict
 from collections.abc import Iterator
 from heapq import heappush
@@ -90,4 +91,4 @@ class Clock(simpy.Environment):
 
     def _take(self, entries: Queue) -> None:
         for entry in entries:
-            heappush(self._queue, entry)
+            heapq.heappush(self._queue, entry)  # `push` is for new events
