@@ -31,10 +31,6 @@ class Instant(Event):
         self._callbacks = [callback]  # SimPy drops the list from the event, but does not change it
         self.time = 0
 
-    def schedule_in(self, delay: int) -> None:
-        """Schedule the event `delay` periods from now; it must not be scheduled already."""
-        self.schedule_at(int(self.env.now) + delay)
-
     def schedule_at(self, time: int) -> None:
         """Schedule the event at a time (periods), not in the past; it must not be scheduled already."""
         self.time = time

@@ -40,10 +40,10 @@ class Bandit:
         if discount != 1.0:
             for sums in (self.reward, self.time, self.count):
                 sums[:] = [discount * value for value in sums]
-        self.reward[arm] = reward = self.reward[arm] + reward
-        self.time[arm] = time = self.time[arm] + time
+        self.reward[arm] += reward
+        self.time[arm] += time
         self.count[arm] += 1.0
-        return reward / time if time > 0.0 else math.nan
+        return self.value(arm)
 
     def value(self, arm: int) -> float:
         """Return Q(a) = Σ R / Σ (T(a) + T(p)) (Eq. 4.15), NaN if the arm is untried."""

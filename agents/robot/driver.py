@@ -14,7 +14,7 @@ from kswarms.agents.robot.state import IDLE, LEG_OVER
 from kswarms.agents.robot.time_account import TimedAgent
 
 STRAIGHT: Final = 1e-9  # smaller turns are skipped (rad)
-ROUNDING: Final = 1e-9  # rounding error of a number of periods
+_ROUNDING: Final = 1e-9  # rounding error of a number of periods
 
 Callbacks = list[Callable[[Any], None]]
 Turn = tuple[int, float]
@@ -152,7 +152,7 @@ END_ACTION: Final[Callbacks] = [_end_action]
 
 def turn_of(angle: float, turn_step: float) -> Turn:
     """Return the turn by an angle, at most `turn_step` in a period (rad); it takes at least one period."""
-    periods = math.ceil(abs(angle) / turn_step - ROUNDING) or 1
+    periods = math.ceil(abs(angle) / turn_step - _ROUNDING) or 1
     return periods, angle / periods
 
 

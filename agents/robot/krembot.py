@@ -7,7 +7,6 @@ kernel that a decision is due; the robot decides after the next percepts.
 import math
 from collections.abc import Sequence
 from itertools import chain
-from math import ceil
 
 import numpy as np
 from simpy.events import NORMAL
@@ -16,7 +15,7 @@ from kswarms.agents.actions import TOWARDS, Action
 from kswarms.agents.body import SENSORS
 from kswarms.agents.common.errors import InputError
 from kswarms.agents.policies.interface import Policy
-from kswarms.agents.robot.driver import END_ACTION, END_LEG, ROUNDING, START_DRIVE, STRAIGHT, Driver
+from kswarms.agents.robot.driver import END_ACTION, END_LEG, START_DRIVE, STRAIGHT, Driver, turn_of
 from kswarms.agents.robot.host import Host
 from kswarms.agents.robot.sensing import NO_HEADINGS, read_sensors, turn_from_walls
 from kswarms.agents.robot.state import ACTION, HOME, HOME_TURN, HOMING_ERROR, IDLE, LEG, TURN
@@ -165,9 +164,8 @@ class Krembot(Driver):
             flights = self._flights[vacant]
             n = len(flights)
             turn, rate = flights[0] if n == 1 else flights[int(next(self._ties) * n)]
-        elif abs(angle) > STRAIGHT:  # the same as `turn_of`
-            turn = ceil(abs(angle) / self._turn_step - ROUNDING) or 1
-            rate = angle / turn
+        elif abs(angle) > STRAIGHT:
+            turn, rate = turn_of(angle, self._turn_step)
         else:
             turn, rate = 0, 0.0
         if timer.callbacks is not None:

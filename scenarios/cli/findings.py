@@ -16,9 +16,8 @@ from kswarms.scenarios.calibration.prior import PRIOR
 from kswarms.scenarios.calibration.worlds import in_world
 from kswarms.scenarios.catalogue import CATALOGUE
 from kswarms.scenarios.catalogue.selection import select_scenarios, with_densities_and_seeds
-from kswarms.scenarios.cli.options import CPUS, Jobs, parse_path
+from kswarms.scenarios.cli.options import CPUS, Jobs, Progress, parse_path
 from kswarms.scenarios.cli.printing import print_line, print_table
-from kswarms.scenarios.cli.progress import ProgressStyle
 from kswarms.scenarios.description.text import parse_integers
 
 TABLE = "findings.csv"
@@ -53,7 +52,7 @@ def findings(
     out: Annotated[
         Path, typer.Option(parser=parse_path, metavar="DIR", help="Output directory; games in it are kept.")
     ] = Path("findings"),
-    progress: Annotated[ProgressStyle, typer.Option(help="How progress is shown.")] = "bar",
+    progress: Progress = "bar",
 ) -> int:
     """Judge findings in several worlds: the default one, and worlds of the ensemble.
 

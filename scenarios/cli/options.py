@@ -10,6 +10,7 @@ from kswarms.agents.common.limits import MAX_JOBS, MAX_RUN_LIMIT, MAX_SEED
 from kswarms.scenarios.catalogue import CATALOGUE, TABLES
 from kswarms.scenarios.catalogue.selection import DEFAULT_N, DEFAULT_SCENARIO, select_scenarios
 from kswarms.scenarios.cli.cpus import available_cpus
+from kswarms.scenarios.cli.progress import ProgressStyle
 from kswarms.scenarios.runs.run import Run, digest
 
 CPUS: Final = min(available_cpus(), MAX_JOBS)
@@ -19,6 +20,7 @@ Jobs = Annotated[
         min=1, max=MAX_JOBS, show_default="one for each available CPU", help="Number of worker processes."
     ),
 ]
+Progress = Annotated[ProgressStyle, typer.Option(help="How progress is shown.")]
 AllowMixed = Annotated[
     bool, typer.Option("--allow-mixed", help="Mix runs of different versions of Python, numpy and numba.")
 ]

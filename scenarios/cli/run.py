@@ -17,12 +17,12 @@ from kswarms.scenarios.cli.options import (
     AllowMixed,
     FirstSeed,
     Jobs,
+    Progress,
     RunLimit,
     complete_ids,
     parse_path,
 )
 from kswarms.scenarios.cli.printing import print_line, print_table, warn
-from kswarms.scenarios.cli.progress import ProgressStyle
 from kswarms.scenarios.description.text import parse_integers, split_words
 from kswarms.scenarios.runs.run import Order, expand, select_shard
 
@@ -76,7 +76,7 @@ def run(
     ] = "1/1",
     allow_mixed: AllowMixed = False,
     no_figures: Annotated[bool, typer.Option("--no-figures", help="Do not draw figures.")] = False,
-    progress: Annotated[ProgressStyle, typer.Option(help="How progress is shown.")] = "bar",
+    progress: Progress = "bar",
     quiet: Annotated[bool, typer.Option("--quiet", help="Print errors only.")] = False,
 ) -> int:
     """Play scenarios, write tables of their results and draw a figure of each.

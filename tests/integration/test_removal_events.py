@@ -218,7 +218,7 @@ def test_a_process_on_the_clock_may_remove_robots() -> None:
 
 def test_an_event_before_all_others_may_remove_robots() -> None:
     model = game_under_way(seconds=0.1)
-    Instant(model.env, BEFORE_TIMEOUTS, lambda _: model.robots[5].remove()).schedule_in(100)
+    Instant(model.env, BEFORE_TIMEOUTS, lambda _: model.robots[5].remove()).schedule_at(model.now + 100)
     model.play()
     check_times_and_pucks(model)
     assert len(model.robots) == 11

@@ -1,6 +1,5 @@
 """The hook that generates pages of the documentation."""
 
-import importlib.util
 from pathlib import Path
 
 import pytest
@@ -10,13 +9,10 @@ pytest.importorskip("mkdocs", reason="needs the extra `docs`")
 from mkdocs.exceptions import PluginError
 
 from kswarms.agents.common.columns import TABLES
+from tests.helpers.scripts import load_script
 
 ROOT = Path(__file__).parents[2]
-spec = importlib.util.spec_from_file_location("build_pages", ROOT / "docs" / "build_pages.py")
-assert spec is not None
-assert spec.loader is not None
-pages = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(pages)
+pages = load_script(ROOT / "docs" / "build_pages.py")
 
 
 @pytest.mark.parametrize(

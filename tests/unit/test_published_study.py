@@ -1,6 +1,5 @@
 """The script that publishes a study; the README and the documentation give the numbers in ``docs/study``."""
 
-import importlib.util
 import json
 from pathlib import Path
 
@@ -10,14 +9,11 @@ from kswarms.analysis.report.published_files import Published
 from kswarms.analysis.report.published_page import study_page
 from kswarms.analysis.results.runs import read_results
 from kswarms.scenarios.cli import invoke
+from tests.helpers.scripts import load_script
 from tests.helpers.tiny_study import PLAIN_RUN, TINY
 
 ROOT = Path(__file__).parents[2]
-spec = importlib.util.spec_from_file_location("study_script", ROOT / "docs" / "study.py")
-assert spec is not None
-assert spec.loader is not None
-script = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(script)
+script = load_script(ROOT / "docs" / "study.py")
 
 
 @pytest.mark.parametrize("name", script.TEXTS)

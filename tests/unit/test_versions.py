@@ -1,6 +1,5 @@
 """Time limits of the tests with other versions of Python and of the libraries."""
 
-import importlib.util
 import sys
 import time
 from pathlib import Path
@@ -8,18 +7,15 @@ from types import ModuleType
 
 import pytest
 
+from tests.helpers.scripts import load_script
+
 CI = Path(__file__).parents[2] / ".ci"
 
 
 @pytest.fixture
 def versions(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     monkeypatch.syspath_prepend(CI)
-    spec = importlib.util.spec_from_file_location("versions", CI / "versions.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return load_script(CI / "versions.py")
 
 
 @pytest.mark.parametrize(("status", "outcome"), [(0, "passed"), (1, "FAILED")])

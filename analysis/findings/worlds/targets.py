@@ -1,9 +1,8 @@
 """Targets of a calibration as data: claims, each with the tolerance up to which a world may miss it."""
 
-import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Final, Self
+from typing import Annotated, Final, Self, cast
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -60,7 +59,7 @@ class Target(FrozenModel):
 
     @property
     def _scale(self) -> float:
-        return self.claim.margin if isinstance(self.claim, Agreement) else self.tolerance or math.inf
+        return self.claim.margin if isinstance(self.claim, Agreement) else cast(float, self.tolerance)
 
     def outputs(self, results: Results) -> Values:
         """Return the means over the seeds that the claim is about, shape (quantities * densities,).
